@@ -91,8 +91,8 @@ esac
 packages=
 for step in "$@"; do
   case $step in
-    unit | test | golden | sanitize | faults | long) ;;
-    lint | tidy | mutation | viewers | slurm | debian | site | clang | valgrind | fuzz | coverage) packages=full ;;
+    unit | test | golden | faults | long) ;;
+    lint | tidy | mutation | viewers | slurm | debian | site | clang | sanitize | valgrind | fuzz | coverage) packages=full ;;
     *) usage 2 >&2 ;;
   esac
 done

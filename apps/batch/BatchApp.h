@@ -21,9 +21,8 @@ struct BatchOptions {
 };
 
 /// \brief Does what is open of the batch, and writes the report of all that is done.
-/// \throws Error as readBatchSpec(), planBatch() and BatchFolder; and after all that could be done
-/// is
-///         done and reported, when tasks failed: how many, and the first reason.
+/// \throws Error as readBatchSpec(), planBatch() and BatchFolder; also when tasks failed, after all
+///         others are done and reported: how many, and the first reason.
 void doBatch(const BatchOptions& options);
 
 /// \brief The program. \return An ExitCode.

@@ -1,7 +1,6 @@
 #pragma once
 /// \file BatchFolder.h
-/// \brief What a batch has on disk: which tasks are done, which failed, and that it is the only
-/// one.
+/// \brief What a batch has on disk: tasks done and failed, and a lock against a second pole-batch.
 ///
 /// - `plan.json`, `batch.ini`, `settings/`, `files/`: what is done, frozen when it was begun;
 /// - `tasks/TASK/`: the outputs of a task that is done, with `done.json`: its key, size and CRC-32
@@ -32,9 +31,7 @@ class BatchFolder {
   }
 
   /// \brief Takes the folder for a batch of that name until the process ends.
-  /// \param resume A batch that is there already is gone on with; otherwise the folder must not
-  /// hold
-  ///        anything.
+  /// \param resume Goes on with the batch that is there; otherwise the folder must be empty.
   /// \throws Error: another batch is there or under way, something else is there, not writable.
   void take(const std::string& name, bool resume);
   /// \brief Writes the plan and the files it has frozen. Remains of tasks that were cut short go.

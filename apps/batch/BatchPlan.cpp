@@ -18,19 +18,32 @@ namespace polemcl::apps {
 namespace fs = std::filesystem;
 namespace {
 
-/// Least confidence of poles for maps where it is another than for localization, see
+/// Values of `--set` for the poles of maps, where these are others than for localization, see
 /// loadMappingSession().
-std::string mapConfidence(const AllSettings& settings) {
-  const double map = settings.map.minConfidence, each = settings.extraction.scanLine.minConfidence;
-  return map > 0 && map != each ? io::significant(map, 9) : "";
+std::vector<std::string> mapAssignments(const AllSettings& settings) {
+  const double least = settings.map.minConfidence;
+  std::vector<std::string> assignments;
+  const auto add = [&](const std::string& section, const ExtractionOptions& extraction) {
+    if (least > 0 && least != extraction.scanLine.minConfidence)
+      assignments.push_back(section + ".min_confidence=" + io::significant(least, 9));
+  };
+  add("scan_line", settings.extraction);
+  for (const LidarOptions& lidar : settings.vehicle.lidars)
+    add("scan_line:" + lidar.label, lidar.extraction);
+  return assignments;
 }
 
-/// What the extraction depends on: configurations with the same text share their poles.
+/// What pole-extract writes depends on this: configurations with the same text share their poles.
 std::string extractionText(AllSettings settings) {
+  settings.motion.covarianceFactor = 1;  // applied when the poles are read
   ConfigWriter writer;
   bind(writer, settings.sensor);
   bind(writer, settings.extraction);
-  return writer.text() + mapConfidence(settings);
+  bind(writer, settings.vehicle, settings.sensor, settings.extraction);
+  bind(writer, settings.motion);
+  std::string text = writer.text();
+  for (const std::string& assignment : mapAssignments(settings)) text += assignment + '\n';
+  return text;
 }
 
 /// Puts together one plan.
@@ -121,7 +134,7 @@ class Planner {
     const AllSettings settings = settingsFor(m_spec, configuration);
     const auto [group, isNew] = m_groupOf.emplace(extractionText(settings), m_groups.size());
     m_group[configuration.name] = group->second;
-    if (isNew) m_groups.push_back({configuration.name, mapConfidence(settings)});
+    if (isNew) m_groups.push_back({configuration.name, mapAssignments(settings)});
     m_plan.files["settings/" + configuration.name + ".ini"] = settingsText(settings);
   }
 
@@ -185,8 +198,8 @@ class Planner {
       append(command, {"--output", group.name + rawlog});
       if (hasPoles(group, session.name)) task.commands.push_back(command);
       if (!hasMapPoles(group, session.name)) continue;
-      append(forMaps, {"--set", "scan_line.min_confidence=" + group.mapConfidence, "--output",
-                       group.name + mapFolder + rawlog});
+      for (const std::string& value : group.forMaps) append(forMaps, {"--set", value});
+      append(forMaps, {"--output", group.name + mapFolder + rawlog});
       task.commands.push_back(forMaps);
     }
   }
@@ -212,7 +225,7 @@ class Planner {
     std::string folder;
     if (hasGroups(m_spec.session(session))) {
       const Group& group = m_groups[m_group.at(configuration.name)];
-      folder = group.name + (forMaps && !group.mapConfidence.empty() ? mapFolder : "") + "/";
+      folder = group.name + (forMaps && !group.forMaps.empty() ? mapFolder : "") + "/";
     }
     return polesPath(session).file(folder + session + ".rawlog");
   }
@@ -418,8 +431,8 @@ class Planner {
   BatchPlan m_plan;
   /// Configurations that share their poles.
   struct Group {
-    std::string name;           ///< of the first of them
-    std::string mapConfidence;  ///< of poles for maps; empty: that of all
+    std::string name;                  ///< of the first of them
+    std::vector<std::string> forMaps;  ///< mapAssignments()
   };
   static constexpr const char* mapFolder = ".map";
 
@@ -434,11 +447,11 @@ class Planner {
   }
   /// Poles for maps are those of localization, unless the group has others for maps.
   bool hasMapPoles(const Group& group, const std::string& session) const {
-    return !group.mapConfidence.empty() && isFor(group, session, &BatchConfiguration::mapSessions);
+    return !group.forMaps.empty() && isFor(group, session, &BatchConfiguration::mapSessions);
   }
   bool hasPoles(const Group& group, const std::string& session) const {
     return isFor(group, session, &BatchConfiguration::sessions) ||
-           (group.mapConfidence.empty() && isFor(group, session, &BatchConfiguration::mapSessions));
+           (group.forMaps.empty() && isFor(group, session, &BatchConfiguration::mapSessions));
   }
 
   std::map<std::string, std::size_t> m_groupOf;  ///< text of the extraction -> index of the group

@@ -28,11 +28,10 @@ std::string outputOf(const std::string& command) {
   while (const std::size_t size = std::fread(block.data(), 1, block.size(), pipe))
     text.append(block.data(), size);
   const int status = ::pclose(pipe);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw Error(command.substr(0, command.find(' ')) +
-                " failed: " + std::string(io::trimmed(text)) +
-                "; is Slurm installed, and its controller running?");
-  return text;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return text;
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  throw Error(command.substr(0, command.find(' ')) + " failed: " + std::string(io::trimmed(text)) +
+              "; is Slurm installed, and its controller running?");
 }
 
 std::string scriptOf(const BatchFolder& folder, const std::string& name) {
@@ -84,12 +83,11 @@ std::vector<std::vector<std::vector<std::string>>> arraysOf(
   return result;
 }
 
-bool isQueued(const std::vector<std::string>& jobs) {
-  std::string list;
-  for (const auto& job : jobs) list += (list.empty() ? "" : ",") + job;
+/// \param jobs Their numbers, with commas between.
+bool isQueued(const std::string& jobs) {
   // Jobs that ended long ago are forgotten, which squeue calls an error if all of them are.
   try {
-    return !io::trimmed(outputOf("squeue --noheader --jobs=" + list + " --format=%i")).empty();
+    return !io::trimmed(outputOf("squeue --noheader --jobs=" + jobs + " --format=%i")).empty();
   } catch (const Error& error) {
     if (std::string(error.what()).find("Invalid job id") != std::string::npos) return false;
     throw;
@@ -102,7 +100,8 @@ void runOnSlurm(const BatchFolder& folder, const BatchPlan& plan,
                 const std::vector<const BatchTask*>& open, const SlurmOptions& options,
                 const std::function<void(std::size_t)>& progress) {
   fs::create_directories(folder.path() / "slurm");
-  std::vector<std::string> jobs, before;
+  std::string jobs;
+  std::vector<std::string> before;
   std::size_t number = 0;
   for (const auto& level : arraysOf(plan, open, options.largestArray)) {
     std::vector<std::string> submitted;
@@ -110,14 +109,25 @@ void runOnSlurm(const BatchFolder& folder, const BatchPlan& plan,
       const std::string name = plan.name + "." + std::to_string(++number);
       submitted.push_back(submit(folder, name, tasks, options, before));
     }
-    jobs.insert(jobs.end(), submitted.begin(), submitted.end());
+    for (const auto& job : submitted) jobs += (jobs.empty() ? "" : ",") + job;
     before = submitted;
   }
   const auto done = [&] {
     return static_cast<std::size_t>(std::count_if(
         open.begin(), open.end(), [&](const BatchTask* task) { return folder.isDone(*task); }));
   };
-  while (!jobs.empty() && isQueued(jobs)) {
+  // A busy controller does not answer for a while.
+  double silentSeconds = 0;
+  while (!jobs.empty()) {
+    try {
+      if (!isQueued(jobs)) return;
+      silentSeconds = 0;
+    } catch (const Error& error) {
+      silentSeconds += options.pollSeconds;
+      if (silentSeconds > options.patienceSeconds)
+        throw Error(std::string(error.what()) + " Jobs may still run; before --resume: scancel " +
+                    jobs);
+    }
     if (progress) progress(done());
     std::this_thread::sleep_for(std::chrono::duration<double>(options.pollSeconds));
   }

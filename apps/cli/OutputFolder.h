@@ -17,9 +17,8 @@ namespace polemcl::apps {
 /// left is removed by the next one for the same target.
 class OutputFolder {
  public:
-  /// \param target Where the folder shall appear. What is there is replaced if it is an empty
-  /// folder
-  ///        or holds nothing but `known` names, `marker` among them: an earlier output.
+  /// \param target Where the folder shall appear. It replaces an empty folder, and an earlier
+  ///        output: one that holds nothing but `known` names, `marker` among them.
   /// \param what What the folder holds, for messages, such as "a simulated drive".
   /// \throws Error when something else is there (named), or the place is not writable.
   OutputFolder(const std::filesystem::path& target, const std::string& what,

@@ -61,9 +61,8 @@ class Progress {
 
 /// \brief The text of the bar.
 /// \param seconds Since the start.
-/// \param width Length of the bar, characters; 0: the line of a log, `extract 25/100 (25 %)  12.5/s
-/// …`. \return Such as `extract [#####---------------] 25/100  12.5/s  0:06 left`; without `total`
-/// no
+/// \param width Length of the bar, characters; 0: as in a log, `extract 25/100 (25 %)  12.5/s …`.
+/// \return Such as `extract [#####---------------] 25/100  12.5/s  0:06 left`. Without `total` no
 ///         bar and no time left; no rate before the first step or before any time has passed.
 std::string progressLine(const std::string& label, std::size_t done, std::size_t total,
                          double seconds, std::size_t width = 20);

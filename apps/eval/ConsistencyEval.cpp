@@ -1,6 +1,6 @@
 /// \file ConsistencyEval.cpp
 /// \brief `pole-eval consistency`: are the covariances of `pole-localize` right? Poses with
-/// covariance against the truth, after convergence (core/Consistency.h).
+/// covariance against the truth, after convergence (core/evaluation/Consistency.h).
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +44,8 @@ class RunReader {
 
   std::vector<ConsistencySample> samples(std::size_t run) {
     const fs::path& cov = m_options.cov[run];
-    const auto truth = io::planar(
-        io::readTum(m_options.truth.size() == 1 ? m_options.truth[0] : m_options.truth[run]));
+    const auto truth =
+        io::readPlanarTum(m_options.truth.size() == 1 ? m_options.truth[0] : m_options.truth[run]);
     const bool judged = !m_options.health.empty();
     std::optional<HealthRecords> health;
     if (judged) health.emplace(m_options.health[run]);
@@ -144,7 +144,7 @@ Figures consistencyFigures(const ConsistencyOptions& options) {
   json.update(Json{{"not_ok", leftOut.notOk},
                    {"unmatched", leftOut.unmatched},
                    {"truth_sigma_m", options.truthSigma},
-                   {"truth_sigma_deg", options.truthSigmaDeg * degree / degree},
+                   {"truth_sigma_deg", options.truthSigmaDeg},
                    {"skip_s", options.skipSeconds},
                    {"skip_m", options.skipMetres},
                    {"runs", runs}});

@@ -1,7 +1,7 @@
 /// \file DetectionsEval.cpp
 /// \brief `pole-eval detections`: the poles of each scan against the true ones of a simulated
-/// folder (core/DetectionEvaluation.h), visible as core/PoleVisibility.h says. Scans and poles
-/// belong together by their times.
+/// folder (core/evaluation/DetectionEvaluation.h), visible as core/evaluation/PoleVisibility.h
+/// says. Scans and poles belong together by their times.
 
 #include <algorithm>
 #include <cmath>

@@ -40,7 +40,8 @@ Subcommand evalCommand(CLI::App& program, const char* name, const char* meaning,
   auto& cli = *program.add_subcommand(name, meaning);
   const auto options = std::make_shared<Options>();
   declare(cli, *options);
-  addOutput(cli, "--json", options->json, "Write the results to this file (JSON)");
+  markOutput(addFile(cli, "--json", options->json, "Write the results to this file (JSON)"),
+             {"_timings.json"});  // of trials
   return {&cli, [options, evaluate](bool quiet) {
             options->quiet = quiet;
             const Figures figures = evaluate(*options);

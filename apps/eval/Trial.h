@@ -52,8 +52,8 @@ struct Delay {
 struct HealthCounts {
   double seconds = 0, metres = 0;
   std::size_t scans = 0, ok = 0, degraded = 0, lost = 0;
-  std::size_t lostTimes = 0, degradedTimes = 0;  ///< in a row counts once
-  double longestSeconds = 0;                     ///< not `ok` in a row
+  std::size_t lostTimes = 0, degradedTimes = 0;  ///< a run of scans counts once
+  double longestSeconds = 0;                     ///< longest run of scans that are not `ok`
   std::map<std::string, std::size_t> reasons;    ///< scans by reason, those not `ok`
   double errorSum = 0, errorMax = 0;             ///< m, over all scans
   std::size_t wrongOk = 0;                       ///< `ok` with a wrong pose

@@ -164,14 +164,6 @@ std::filesystem::path truthBeside(std::filesystem::path rawlog) {
   return rawlog.replace_extension(".tum");
 }
 
-void protectPoses(const ImportOptions& options) {
-  std::error_code notThere;
-  for (const auto& file : {options.poses, options.odometry})
-    if (file && std::filesystem::equivalent(*file, truthBeside(options.output), notThere))
-      throw Error(file->string() + ": is an input, and the truth beside " +
-                  options.output.string() + " would replace it; choose another name for --output");
-}
-
 ScanTiming timingOf(const ImportOptions& options, const io::ScanFolder& folder) {
   if (options.timing) return *options.timing;
   const auto file = timingFile(options);
@@ -247,7 +239,6 @@ ScanTiming datasetTiming(Dataset dataset) {
 ImportReport importDataset(const ImportOptions& options,
                            const std::function<void(std::size_t, std::size_t)>& progress) {
   options.validate();
-  protectPoses(options);
   Eigen::Isometry3d T_robot_sensor =
       options.T_robot_sensor.value_or(datasetSensorPose(options.dataset));
   auto folder = readDataset(options, T_robot_sensor, progress);
@@ -270,7 +261,7 @@ ImportReport importDataset(const ImportOptions& options,
   MotionSource motions(options);
   GnssWriter gnss(rawlog, gnssObservations(folder));
   if (const ScanTiming timing = timingOf(options, folder); timing.turn != Turn::automatic)
-    rawlog.writeComment(timingComment(timing));
+    rawlog.writeComment(timingComment(timing), folder.scans.front().time);
   for (std::size_t i = 0; i < folder.scans.size(); ++i) {
     const auto& scan = folder.scans[i];
     motions.pass(scan);

@@ -72,9 +72,8 @@ struct LocalizeResult {
 /// The folder `output` gets:
 /// - `run_NN.tum`: the estimated robot poses, a row per scan, the first included, at its time;
 ///   started anywhere, from the scan on by which the pose is known;
-/// - `run_NN_cov.csv`: `scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw` of the same
-/// poses:
-///   the estimate and its covariance, map frame, m², m·rad, rad²;
+/// - `run_NN_cov.csv`: `scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw`: the same poses
+///   and their covariances, map frame, m², m·rad, rad²;
 /// - `run_NN_health.csv`: `scan,timestamp,state,reason,matched_share,seen_share,innovation,
 ///   effective_particles,particles,mode_share,spread_m,spread_deg,poles,relocalized` of every scan
 ///   (see LocalizationHealth.h; `relocalized` is 1 where the global search set the pose);
@@ -83,7 +82,7 @@ struct LocalizeResult {
 ///   index in the input, lateral + to the left and longitudinal + ahead of the true pose, heading +
 ///   counter-clockwise, poles the number observed, effective_share that of the particles;
 /// - `run_00_scenes/NNNNNN.3Dscene`, if asked for: the first run after scan NNNNNN (see
-///   report/LiveScene.h; stock objects);
+///   report/scene/LiveScene.h; stock objects);
 /// - `summary.json`: what went in; with truth the figures of `pole-eval trajectory` as means over
 ///   the runs (`pos_max`: the largest), their standard deviations in `spread`, each run in `runs`,
 ///   and in `ok_beyond_spread` the scans of all runs that were `ok` though the error was above 0.5

@@ -3,6 +3,8 @@
 #include "cli/Progress.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
+#include "io/file/ErrorPlace.h"
+#include "io/file/TextFile.h"
 #include "localize/GnssStart.h"
 
 namespace polemcl::apps {
@@ -19,13 +21,18 @@ LocalizePlayer::LocalizePlayer(LocalizeFacts& facts, const LocalizationMap& map,
       m_bag(bag) {}
 
 void LocalizePlayer::take(const ReadScan& scan) {
+  const std::string source = m_facts.job.source().string();
   if (scan.index > 0 && !scan.motion)
-    throw Error(m_facts.job.source().string() + ": no odometry before scan " +
-                std::to_string(scan.index) +
-                ": the filter needs it; import with an odometry file or with --odometry-noise");
+    throw Error(
+        source + ": no odometry for scan " + std::to_string(scan.index) + ", at " +
+        io::fixed(scan.time, 3) + " s: the filter needs it; " +
+        (scan.index > 1 ? "leave out what comes before it begins or after it ends, or " : "") +
+        "import with an odometry file or with --odometry-noise");
   const PoleScan frame = frameOf(scan);
   if (!m_runs) begin(frame);
-  const std::vector<FilterStep>& steps = m_runs->step(frame);
+  const std::vector<FilterStep>& steps =
+      io::located(source + ": scan " + std::to_string(scan.index) + ": ",
+                  [&]() -> const std::vector<FilterStep>& { return m_runs->step(frame); });
   const auto found = ScanClock::now();
   if (m_stream) m_stream->add(scan.index, steps[0].update, scan.dropped);
   m_timings.total.add(secondsSince(scan.arrival));

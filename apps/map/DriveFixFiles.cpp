@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cli/MapPlane.h"
+#include "core/common/Statistics.h"
 #include "io/data/GnssCsv.h"
 #include "io/file/TextFile.h"
 #include "mrpt/rawlog/GnssFixes.h"
@@ -30,9 +31,7 @@ std::optional<DriveFix> between(const GnssFix& fix, const MappingSession& drive)
 }
 
 double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return elementOfRank(values, values.size() / 2);
 }
 
 /// The datum of the median latitude and longitude. \param fixes At least one.

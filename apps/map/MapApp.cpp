@@ -130,7 +130,8 @@ Subcommand buildCommand(CLI::App& program) {
   markOutput(
       addFile(cli, "--trajectory", job->trajectories,
               "Without --truth: also write the poses found (TUM, covariances beside it), one "
-              "file per rawlog"));
+              "file per rawlog"),
+      {"_cov.csv"});
   addOutput(cli, "--png", job->png, "Also draw the map, the paths and the loops");
   return command;
 }

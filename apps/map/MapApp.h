@@ -1,6 +1,6 @@
 #pragma once
 /// \file MapApp.h
-/// \brief `pole-map build | update | diff | convert`.
+/// \brief `pole-map build | import | update | diff | convert`.
 
 namespace polemcl::apps {
 

@@ -173,8 +173,7 @@ std::string noPoles(const MapBuildSummary& summary, const PoleMapOptions& option
          " detections in " + std::to_string(map.clusters) + " places, the best with " +
          io::significant(map.bestCount, 4) + counted(options.counting) +
          ", min_count = " + io::significant(options.minCount, 4) +
-         " are needed (less where scans are far apart), max_gap = " +
-         std::to_string(options.maxGap) +
+         " are needed (less where scans are far apart)" +
          (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]") +
          // Poles that are found again and again fall into few places.
          (map.detections > 0 && 2 * map.clusters > map.detections

@@ -38,8 +38,7 @@ struct MapImportSummary {
 /// \brief Reads an inventory and writes a `.polemap`. Poles have the covariance `sigma`², the
 /// confidence 0.9 and, unless told, the radius 0: not known.
 /// \throws Error naming file and place: as the readers do; no pole left; a pole 100 km and more
-/// from
-///         the datum; a radius that is no number, or out of range.
+///         from the datum; a radius that is no number, or out of range.
 MapImportSummary importMap(const MapImportOptions& options);
 
 /// \brief What the program prints.

@@ -28,7 +28,7 @@ void requireSamePlace(const MapUpdateCounts& counts, const std::filesystem::path
     return;
   throw Error(input.string() + ": only " + std::to_string(counts.foundOnMap) + " of " +
               std::to_string(counts.expectedOnMap) + " poles of " + map.string() +
-              " in its view were found; is its truth of the same place and datum? A new place "
+              " in its view were found; are its poses of the same place and datum? A new place "
               "needs a new map, a map of pole-map import needs pole-map build --inventory");
 }
 
@@ -148,7 +148,7 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& setti
     if (counts.scans == 0)
       throw Error(job.inputs[i].string() + ": no usable scan, all " +
                   std::to_string(counts.uncertain) +
-                  " poses are less certain than [map_update] max_sigma_m");
+                  " poses have a standard deviation above 0.25 m");
     requireSamePlace(counts, job.inputs[i], job.map);
     summary.sessions.push_back(counts);
     summary.skipped += session.skipped;

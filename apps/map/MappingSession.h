@@ -74,8 +74,8 @@ struct MappingSession {
 /// \brief Reads a rawlog of scans or poles; doubtful detections down to `[map] min_confidence`.
 /// \param progress May be empty.
 /// \throws Error as readPoleSequence() and SessionPoses; when a motion is missing that stands for
-///         poses; when less than half of the scans have a
-///         pose; when the time of a scan is not later than that of the one before.
+///         poses; when less than half of the scans have a pose; when the time of a scan is not
+///         later than that of the one before.
 MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& settings,
                                   bool allowTruncated, const ScanProgress& progress);
 

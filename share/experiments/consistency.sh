@@ -16,6 +16,7 @@ out=$1
 first=${2:-701}
 worlds=${3:-30}
 find_programs pole-simulate pole-map pole-localize pole-eval
+find_tools jq
 mkdir -p "$out"
 
 # drive NAME WORLD DAY REVERSE: NAME.ini .rawlog .tum
@@ -63,17 +64,14 @@ score() {
   printf '%-8s ' "$name"
   tail -n 1 "$out/$name.txt"
 }
-sed -n 2p "$(
-  # shellcheck disable=SC2086 # word splitting wanted: lists of files
-  score forward $forward_truth --cov $forward >"$out/table.txt"
-  # shellcheck disable=SC2086
-  score reverse $reverse_truth --cov $reverse >>"$out/table.txt"
-  # shellcheck disable=SC2086
-  score all $forward_truth $reverse_truth --cov $forward $reverse >>"$out/table.txt"
-  # shellcheck disable=SC2086
-  score all_ok $forward_truth $reverse_truth --cov $forward $reverse --health $forward_health $reverse_health >>"$out/table.txt"
-  echo "$out/all.txt"
-)"
+# shellcheck disable=SC2086 # word splitting wanted: lists of files
+{
+  score forward $forward_truth --cov $forward
+  score reverse $reverse_truth --cov $reverse
+  score all $forward_truth $reverse_truth --cov $forward $reverse
+  score all_ok $forward_truth $reverse_truth --cov $forward $reverse --health $forward_health $reverse_health
+} >"$out/table.txt"
+sed -n 2p "$out/all.txt"
 jq -s '{forward: .[0], reverse: .[1], all: .[2], all_ok: .[3]}' "$out/forward.json" "$out/reverse.json" "$out/all.json" \
   "$out/all_ok.json" >"$out/result.json"
 cat "$out/table.txt"

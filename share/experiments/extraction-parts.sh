@@ -1,4 +1,4 @@
-# Sourced by extraction.sh, which sets $top, $bin, $out, $length, $spacing: the steps.
+# Sourced by scripts that set $top, $bin, $out, $length, $spacing: the steps.
 # shellcheck shell=sh disable=SC2154
 
 # scan_line_settings SENSOR: the configuration of that sensor.

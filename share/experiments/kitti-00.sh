@@ -44,7 +44,7 @@ score() {
   jq -n --arg drive "$1" --arg method "$2" --slurpfile a "$out/all.json" \
     --slurpfile n "$out/near.json" --argjson labelled "$(($(wc -l <"$out/$1-near.csv") - 1))" \
     '{drive: $drive, method: $method, true: $a[0].matches, precision: $a[0].precision,
-      map_poles: ($a[0].matches / $a[0].precision | round), found_near: $n[0].matches,
+      map_poles: $a[0].map_poles, found_near: $n[0].matches,
       labelled_near: $labelled, recall: $n[0].recall}'
 }
 

@@ -29,7 +29,7 @@ build() {
   "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$here/poles.csv" \
     --map "$here/$3.polemap" --json "$here/$3.json" >/dev/null
   jq -c --arg sensor "$1" --argjson world "$2" --arg rule "$3" \
-    '{sensor: $sensor, world: $world, rule: $rule, precision, recall, f1, matches}' \
+    '{sensor: $sensor, world: $world, rule: $rule, precision, recall, f1, matches, map_poles, truth_poles}' \
     "$here/$3.json" >>"$out/results"
 }
 
@@ -62,8 +62,8 @@ done
 jq -s . "$out/results" >"$out/result.json"
 rm "$out/results"
 jq -r 'group_by([.sensor, .rule])[] | (map(.matches) | add) as $m |
-  [.[0].sensor, .[0].rule, $m / (map(.matches / .precision) | add),
-   $m / (map(.matches / .recall) | add), (map(.f1) | min)] | @tsv' "$out/result.json" |
+  [.[0].sensor, .[0].rule, $m / (map(.map_poles) | add),
+   $m / (map(.truth_poles) | add), (map(.f1) | min)] | @tsv' "$out/result.json" |
   awk -F '\t' 'BEGIN { printf "%-8s %-12s %9s %7s %7s %9s\n", "config", "counting", "precision", "recall",
       "F1", "worst F1" }
     { printf "%-8s %-12s %9.3f %7.3f %7.3f %9.3f\n", $1, $2, $3, $4, 2 * $3 * $4 / ($3 + $4), $5 }' \

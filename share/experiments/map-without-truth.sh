@@ -8,8 +8,7 @@
 # Odometry is the true motion with 2 % noise, 1 % too long and 0.01 deg/m off (seeds 7 to 11 on the VLP-16 loop, 7 on
 # the others); on the kilometre also that of a real laser odometry. nuScenes has the poses by the planes in its scans
 # (plane_adjustment.py); "sides_apart" is how far those by the points on the left and on the right end apart.
-# "street": worlds 701 to 720, drawn, 600 m, wheels: no place is passed again, so each loop is
-# false.
+# "street": worlds 701 to 720, drawn, 600 m, wheels: no place is passed again, so each loop is false.
 # "-alone": without any odometry, by the poles alone; "cast-630" to "cast-633" also: streets of 400 m, a scan a metre,
 # the next numbers that nothing was looked at on.
 # "-clock": the clock of the scans, off by these seconds; "-uncorrected": scans of a turning LiDAR whose
@@ -101,7 +100,7 @@ cast_street() {
   "$bin/pole-simulate" --quiet --config "$top/config/hdl32e.ini" --seed "$1" --length 400 \
     --set simulation.spacing_m=1 --output cast >/dev/null
   alone "cast-$1" "$out/cast" "$top/config/hdl32e.ini" 0,0 "0 0 0 0 0 0" ""
-  rm -r cast*
+  rm -r cast
 }
 
 # Metres 3000 to 5000 of KAIST 01, cast, world 601, a scan a metre, wheels.

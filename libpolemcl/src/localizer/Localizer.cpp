@@ -83,7 +83,8 @@ LocalizationUpdate Localizer::Impl::follow(PoleScan frame, double time, const Po
 
 LocalizationUpdate Localizer::Impl::stepByOdometry(PoleScan frame, double time) {
   const auto pose = odometry.track().at(time);
-  if (!pose) throw Error("no odometry within 0.5 s of the scan at " + io::fixed(time, 3) + " s");
+  if (!pose || !odometry.track().isNear(time))
+    throw Error("no odometry within 0.5 s of the scan at " + io::fixed(time, 3) + " s");
   if (!odometry.motionTo(time, *pose)) frame.velocity = odometry.velocity();
   return follow(std::move(frame), time, *pose);
 }
@@ -144,6 +145,9 @@ void Localizer::setRecordedTiming(const ScanTiming& timing) {
 
 LocalizationUpdate Localizer::step(double time, const PointsView& points,
                                    const Eigen::Isometry3d& T_robot_lidar) {
+  const Eigen::Matrix3d turn = T_robot_lidar.linear();
+  if (!T_robot_lidar.matrix().allFinite() || !turn.isUnitary(1e-3) || turn.determinant() < 0)
+    throw Error("T_robot_lidar is no pose: a finite place and a rotation are needed");
   auto scan = observationOf(time, points);
   scan.sensorPose = mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_robot_lidar.matrix()));
   return m_impl->stepByOdometry(m_impl->frameOfScan(scan), time);

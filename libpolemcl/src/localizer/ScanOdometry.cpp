@@ -7,19 +7,29 @@
 namespace polemcl {
 namespace {
 
-bool isFinite(const Pose2D& pose) {
-  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
+/// Readings go back for longer than this: the clock was set, s.
+constexpr double kClockSet = 1;
+
+void requireFinite(double time, const Pose2D& pose) {
+  for (const double value : {time, pose.x, pose.y, pose.yaw})
+    if (!std::isfinite(value)) throw Error("odometry: time, x, y and yaw must be finite");
 }
 
 }  // namespace
 
 void ScanOdometry::add(const OdometryReading& next) {
-  if (!std::isfinite(next.time) || !isFinite(next.pose))
-    throw Error("odometry: time, x, y and yaw must be finite");
-  if (m_reading && next.time <= m_reading->time) return;
+  requireFinite(next.time, next.pose);
+  if (m_reading && next.time <= m_reading->time) {
+    if (!m_lateSince || next.time < *m_lateSince) m_lateSince = next.time;
+    if (next.time - *m_lateSince < kClockSet) return;
+    beginAnew();
+  }
+  m_lateSince.reset();
   m_track.add(next.time, next.pose);
   OdometryReading taken = next;
   taken.pose = *m_track.at(next.time);
+  const Velocity velocity = next.velocity.value_or(Velocity());
+  if (!std::isfinite(velocity.x + velocity.y + velocity.yaw)) taken.velocity.reset();
   const auto& covariance = next.velocityCovariance;
   if (m_reading && covariance && isCovariance(*covariance) && covariance->trace() > 0) {
     const double seconds = next.time - m_reading->time;
@@ -31,11 +41,18 @@ void ScanOdometry::add(const OdometryReading& next) {
   m_steps.forgetBefore(next.time - Localizer::keptOdometry);
 }
 
+/// The next reading is the first one of its clock. Its pose goes on from the readings before.
+void ScanOdometry::beginAnew() {
+  if (m_before) m_before = m_track.asRead(*m_before);
+  m_track.clear();
+  m_steps = {};
+  m_reading.reset();
+}
+
 Pose2D ScanOdometry::addAtScan(double time, const Pose2D& pose) {
+  requireFinite(time, pose);
   m_track.add(time, pose);
-  const auto added = m_track.at(time);
-  if (!added) throw Error("odometry: x, y and yaw must be finite");
-  return *added;
+  return *m_track.at(time);
 }
 
 std::optional<Velocity> ScanOdometry::velocity() const {

@@ -16,7 +16,8 @@ class ScanOdometry {
  public:
   explicit ScanOdometry(const MotionOptions& options) : m_options(options) {}
 
-  /// \brief A reading not later than the last one is left out. \throws Error unless finite.
+  /// \brief A reading not later than the last one is left out; after a second of such readings the
+  /// odometry begins anew. \throws Error unless time and pose are finite.
   void add(const OdometryReading& reading);
   /// \brief The odometry at a scan. \throws Error unless finite.
   Pose2D addAtScan(double time, const Pose2D& pose);
@@ -31,10 +32,13 @@ class ScanOdometry {
   void pass(double time, const Pose2D& pose);
 
  private:
+  void beginAnew();
+
   MotionOptions m_options;
   OdometryTrack m_track;
   io::MotionSteps m_steps;                   ///< between the readings whose covariance is known
   std::optional<OdometryReading> m_reading;  ///< the last one; its pose is that of the track
+  std::optional<double> m_lateSince;         ///< first of the readings now left out, s
   std::optional<Pose2D> m_before;            ///< at the last scan
   double m_timeBefore = 0;                   ///< of the last scan, s
 };

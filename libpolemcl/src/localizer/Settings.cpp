@@ -45,12 +45,20 @@ Settings::Settings(SettingsValues values)
     : m_values(std::make_unique<SettingsValues>(std::move(values))) {}
 Settings::Settings(const Settings& other) : Settings(other.values()) {}
 Settings& Settings::operator=(const Settings& other) {
-  *m_values = *other.m_values;
+  m_values = std::make_unique<SettingsValues>(other.values());
   return *this;
 }
 Settings::Settings(Settings&&) noexcept = default;
 Settings& Settings::operator=(Settings&&) noexcept = default;
 Settings::~Settings() = default;
+
+SensorOptions Settings::sensor() const {
+  return m_values->sensor;
+}
+
+ExtractionOptions Settings::extraction() const {
+  return m_values->extraction;
+}
 
 void Settings::set(const std::string& assignment) {
   *m_values = read(ConfigFile::fromText(text(), "settings"), {assignment});

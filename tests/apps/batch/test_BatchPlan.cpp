@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "batch/BatchPlan.h"
 #include "support/BatchTestFiles.h"
 #include "support/ExpectHas.h"
@@ -152,6 +154,29 @@ TEST(BatchPlan, MapsTakeDoubtfulPolesWhereTheyAreAskedFor) {
   EXPECT_EQ(argument(plan.task("map.one.a").commands[0], "--input"), "../poles.a/one.map/a.rawlog");
   EXPECT_EQ(argument(plan.task("run.one.b.00").commands[0], "--input"), "../poles.b/one/b.rawlog");
   EXPECT_EQ(argument(plan.task("map.two.a").commands[0], "--input"), "../poles.a/two/a.rawlog");
+}
+
+TEST(BatchPlan, PolesAreSharedOnlyBetweenTheSameLidarsAndMotions) {
+  const std::vector<std::string> front{"vehicle.lidars=front"};
+  const BatchPlan plan = planOf([&](BatchSpec& spec) {
+    const BatchConfiguration first = spec.configurations[0];
+    const auto add = [&](const std::string& name, const std::vector<std::string>& set) {
+      spec.configurations.push_back(first);
+      spec.configurations.back().name = name;
+      spec.configurations.back().set = set;
+    };
+    spec.configurations[0].set = front;
+    add("same", {"vehicle.lidars=front", "motion.covariance_factor=2"});
+    add("both", {"vehicle.lidars=front stern", "map.min_confidence=0.3"});
+    add("noisy", {"vehicle.lidars=front", "motion.xy_per_m=0.5"});
+  });
+  const BatchTask& poles = plan.task("poles.b");
+  EXPECT_EQ(poles.outputs, (Names{"b.tum", "one/b.rawlog", "both/b.rawlog", "both.map/b.rawlog",
+                                  "noisy/b.rawlog"}));
+  const std::vector<std::string>& forMaps = poles.commands[3];
+  for (const char* value : {"scan_line.min_confidence=0.3", "scan_line:front.min_confidence=0.3",
+                            "scan_line:stern.min_confidence=0.3"})
+    EXPECT_EQ(std::count(forMaps.begin(), forMaps.end(), value), 1) << value;
 }
 
 TEST(BatchPlan, SessionsHaveThePolesOfTheConfigurationsThatUseThem) {

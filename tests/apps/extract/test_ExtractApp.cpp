@@ -4,6 +4,7 @@
 #include <map>
 
 #include <polemcl/core/common/Types.h>
+#include "cli/CommandLine.h"
 #include "extract/ExtractApp.h"
 #include "mrpt/rawlog/GnssFixes.h"
 #include "mrpt/rawlog/RawlogReader.h"

@@ -256,6 +256,15 @@ TEST_F(InspectApp, OfAStatedTimingOnlyTheRestOfTheClockIsWritten) {
   EXPECT_EQ(settingsFor(found).sensor.timing.turn, Turn::automatic);
 }
 
+TEST(RawlogInspection, PacketsStateTheirTiming) {
+  const fs::path sample = "/usr/share/mrpt/datasets/test_velodyne_VLP16.rawlog";
+  if (!fs::exists(sample)) GTEST_SKIP() << sample << " is not there";
+  const ScanTiming stated = inspectRawlog(sample.string()).stated;
+  EXPECT_EQ(stated.turn, Turn::clockwise);
+  EXPECT_NEAR(stated.seconds, 0.1, 0.002);
+  EXPECT_EQ(stated.stamp, 0);
+}
+
 TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
   const char* data = std::getenv("POLEMCL_DATA");
   if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";

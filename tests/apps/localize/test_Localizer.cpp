@@ -101,6 +101,7 @@ TEST_F(LocalizerTest, SaysWhatIsWrong) {
   EXPECT_HAS(messageOf([&] { own.step(scans_poles[0], {}); }), "has not been started");
   EXPECT_HAS(messageOf([&] { own.start({1e6, 0, 0}); }), "pole");
   own.startAnywhere();
+  EXPECT_HAS(messageOf([&] { own.step(scans_poles[0], {NAN, 0, 0}); }), "finite");
   own.step(scans_poles[1], odometry[1]);
   EXPECT_HAS(messageOf([&] { own.step(scans_poles[0], odometry[0]); }), "time does not increase");
   EXPECT_HAS(messageOf([&] { own.step(scans_poles[2], {NAN, 0, 0}); }), "finite");
@@ -119,6 +120,9 @@ TEST(SettingsTest, AreReadReplacedAndWritten) {
   EXPECT_HAS(copy.text(), "model = vlp16 ");
   EXPECT_EQ(settings.text(), before);
   EXPECT_HAS(messageOf([] { Settings("none.ini"); }), "none.ini");
+  const Settings moved = std::move(copy);
+  copy = settings;  // NOLINT: what was moved from can be assigned to
+  EXPECT_EQ(copy.text(), before);
 }
 
 TEST_F(StreetTest, PointsBecomePoses) {
@@ -260,7 +264,67 @@ TEST_F(OdometryTest, SaysWhatIsMissing) {
   OdometryReading wrong;
   wrong.pose.x = NAN;
   EXPECT_HAS(messageOf([&] { own.addOdometry(wrong); }), "must be finite");
+  own.addOdometry(readingAt(0));
+  Eigen::Isometry3d wide = Eigen::Isometry3d::Identity();
+  wide.linear() *= 2;
+  EXPECT_HAS(messageOf([&] { own.step(timeOf(0), cloud(0).view(), wide); }), "T_robot_lidar");
+  for (const double time : {static_cast<double>(NAN), -0.5, 1e300})
+    EXPECT_HAS(messageOf([&] { own.step(time, cloud(0).view(), Pose2D()); }), "at least 0");
+  const std::vector<float> one{1};
+  EXPECT_HAS(messageOf([&] {
+               own.step(1, PointsView{one.data(), one.data(), nullptr, 1}, Pose2D());
+             }),
+             "points without x, y or z");
+  for (const double radius : {-5.0, static_cast<double>(NAN)}) {
+    EXPECT_HAS(messageOf([&] { own.startWithin(0, 0, radius); }), "radius");
+    EXPECT_HAS(messageOf([&] { own.start({}, radius); }), "radius");
+  }
   EXPECT_FALSE(own.odometryFrame());
+}
+
+TEST_F(OdometryTest, ScansInAGapOfTheReadingsAreRefused) {
+  Localizer own = started();
+  for (const double later : {-0.6, 0.4}) {
+    OdometryReading reading = readingAt(0);
+    reading.time += later;
+    own.addOdometry(reading);
+  }
+  EXPECT_TRUE(own.hasOdometry(timeOf(0)));
+  EXPECT_HAS(messageOf([&] { step(own, 0); }), "no odometry within 0.5 s of the scan");
+}
+
+TEST_F(OdometryTest, AClockThatWasSetIsFollowedAfterASecond) {
+  Localizer own = started();
+  OdometryReading wrong = readingAt(0);
+  wrong.time += 1e6;
+  wrong.velocity = Velocity{NAN, 0, 0};
+  own.addOdometry(readingAt(0));
+  step(own, 0);
+  own.addOdometry(wrong);
+  std::size_t taken = 0;
+  for (std::size_t i = 1; i < number; ++i) {
+    own.addOdometry(readingAt(i));
+    try {
+      const auto update = step(own, i);
+      EXPECT_NEAR(update.estimate->mean.x, static_cast<double>(i), 0.3) << i;
+      ++taken;
+    } catch (const Error& error) {
+      EXPECT_HAS(std::string(error.what()), "no odometry within 0.5 s");
+    }
+  }
+  EXPECT_EQ(taken, number - 6) << "readings are 0.2 s apart: five were left out";
+}
+
+TEST_F(OdometryTest, AfterAClockThatBeginsAgainANewStartTakesItsTimes) {
+  Localizer own = started();
+  for (int round = 0; round < 2; ++round)
+    for (std::size_t i = 0; i < number; ++i) {
+      own.addOdometry(readingAt(i));
+      if (round == 1 && i < 6) continue;
+      if (round == 1 && i == 6) own.start({6, 0, 0}, 0.3, 0.1);
+      const auto update = step(own, i);
+      EXPECT_NEAR(update.estimate->mean.x, static_cast<double>(i), 0.3) << i;
+    }
 }
 
 /// Hours without a scan must not fill the memory.

@@ -250,6 +250,7 @@ TEST_F(MapApp, WithoutTruthOdometryOrPolesTellTheWay) {
   import("in");
   expectFailure(build({}), {"in.rawlog: no odometry leads to scan", "poles"});
   EXPECT_EQ(build({"--trajectory", at("a.tum"), at("b.tum")}).code, 2);
+  EXPECT_EQ(build({"--trajectory", at("a.tum"), "--png", at("a_cov.csv")}).code, 2);
   EXPECT_EQ(build({"--truth", at("in.tum"), "--trajectory", at("a.tum")}).code, 2);
   EXPECT_FALSE(hasMap());
 }

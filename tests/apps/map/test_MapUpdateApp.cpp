@@ -212,7 +212,7 @@ TEST_F(MapUpdateApp, DoubtfulPosesDoNotChangeTheMap) {
   writeRun("degraded", 1e-6);
   expectFailure(updateByRun(), {"day1.rawlog", "25 at which the localizer was not ok"});
   writeRun("ok", 0.09);  // 0.3 m
-  expectFailure(updateByRun(), {"day1.rawlog", "all 25 poses", "max_sigma_m"});
+  expectFailure(updateByRun(), {"day1.rawlog", "all 25 poses", "above 0.25 m"});
   writeRun("ok", 1e-6, 7);
   const auto outcome = updateByRun();
   ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -56,6 +56,14 @@ TEST_F(SimulateApp, RunningAgainReplacesWithTheSameBytes) {
   EXPECT_EQ(names(folder.path()), (std::vector<std::string>{"drive", "street.ini"}));
 }
 
+TEST_F(SimulateApp, RunningAgainReplacesTheTimingToo) {
+  for (int i = 0; i < 2; ++i)
+    ASSERT_EQ(run({"--set", "simulation.motion_distortion=true"}).code, 0) << i;
+  EXPECT_TRUE(std::filesystem::exists(folder / "drive" / "scan_timing.ini"));
+  ASSERT_EQ(run().code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "drive" / "scan_timing.ini"));
+}
+
 TEST_F(SimulateApp, RefusesToReplaceWhatItDidNotWrite) {
   writeText(folder / "drive" / "holiday.jpg", "sea");
   expectFailure(run(), {"drive", "holiday.jpg"});

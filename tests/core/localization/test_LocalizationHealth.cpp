@@ -370,11 +370,16 @@ TEST(LocalizationHealth, FewMatchesBearNoPoseOut) {
   feed.expect(State::degraded, Reason::converging);
 }
 
-TEST(LocalizationHealth, ATimeGapIsNamedUntilMetresAreDriven) {
+TEST(LocalizationHealth, ATimeGapIsNamedUntilMatchesOverMetres) {
   Feed feed;
   feed.scans(40, 0.9);
   feed.time += 120;
   feed.scan(0.9);
+  feed.expect(State::degraded, Reason::timeGap);
+  feed.scans(11, 0.9);
+  feed.expect(State::ok, Reason::none);
+  feed.time += 120;
+  feed.scans(13, 0, 1);  // 6 m, and nothing matches
   feed.expect(State::degraded, Reason::timeGap);
   feed.scans(11, 0.9);
   feed.expect(State::ok, Reason::none);

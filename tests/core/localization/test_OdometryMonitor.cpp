@@ -73,9 +73,11 @@ double drift(const CheckedDrive& drive, const std::vector<MonitoredMotion>& moti
   return std::hypot(pose.x - drive.frames[to].truth.x, pose.y - drive.frames[to].truth.y);
 }
 
-/// Two scans with a motion between them: `seen` by the poles, `stated` by a sure odometry.
+/// Two scans with a motion between them: `seen` by the poles, `stated` by the odometry.
 MonitoredMotion afterTwoScans(const std::vector<Eigen::Vector2d>& places, const Pose2D& seen,
-                              const Pose2D& stated) {
+                              const Pose2D& stated,
+                              const Eigen::Matrix3d& covariance = 1e-8 *
+                                                                  Eigen::Matrix3d::Identity()) {
   std::vector<PoleDetection> before, after;
   for (const Eigen::Vector2d& place : places) {
     const Pose2D at = relative(seen, {place.x(), place.y(), 0});
@@ -83,7 +85,6 @@ MonitoredMotion afterTwoScans(const std::vector<Eigen::Vector2d>& places, const 
     after.push_back(tests::detectionAt(at.x, at.y, 1e-4));
   }
   OdometryMonitor check;
-  const Eigen::Matrix3d covariance = 1e-8 * Eigen::Matrix3d::Identity();
   check.add(0, {}, covariance, before);
   return check.add(0.1, stated, covariance, after);
 }
@@ -336,6 +337,34 @@ TEST(OdometryMonitor, SixPolesContradictWhatIsClearlyBeyondTheTolerance) {
     EXPECT_EQ(result.verdict, OdometryVerdict::contradicted);
     EXPECT_NEAR(result.motion.x, clear.x, 1e-6);
     EXPECT_NEAR(result.motion.yaw, clear.yaw, 1e-6);
+  }
+}
+
+// Both motions begin in one frame, and so does their covariance, however far the vehicle turns.
+TEST(OdometryMonitor, ErrorsInATurnCountWhereTheyAre) {
+  const Eigen::Matrix3d along = Eigen::Vector3d(0.09, 1e-6, 1e-8).asDiagonal();
+  const Pose2D stated{1, 0, 1.5};
+  EXPECT_EQ(afterTwoScans(kAllRound, {1, 0.5, 1.5}, stated, along).verdict,
+            OdometryVerdict::contradicted);
+  EXPECT_EQ(afterTwoScans(kAllRound, {1.5, 0, 1.5}, stated, along).verdict,
+            OdometryVerdict::agrees);
+}
+
+// Nothing is known yet of how often poles are seen again, whenever the clock begins.
+TEST(OdometryMonitor, TheSecondScanOfADriveContradictsNothingByPolesNotSeenAgain) {
+  for (const double begin : {0.0, 1e9}) {
+    OdometryMonitor check;
+    MonitoredMotion result;
+    for (int scan = 0; scan < 2; ++scan) {
+      std::vector<PoleDetection> poles;
+      for (int i = 0; i < 10; ++i) {
+        const double range = scan == 0 ? 10 : 30, angle = 0.6 * i + 0.05 * i * i * (scan + 1);
+        poles.push_back(tests::detectionAt(range * std::cos(angle), range * std::sin(angle), 1e-4));
+      }
+      result =
+          check.add(begin + 0.1 * scan, {0.7, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity(), poles);
+    }
+    EXPECT_EQ(result.verdict, OdometryVerdict::unknown) << begin;
   }
 }
 

@@ -105,6 +105,13 @@ TEST(SessionAlignment, RemovesErrorsOfDecimetres) {
   EXPECT_NEAR(summary.largestShift, worst(right, wrong, 0, right.size()).position, 0.05);
 }
 
+TEST(SessionAlignment, TheFirstScanCounts) {
+  const std::vector<SessionScan> right{driveThrough(street()).at(150)};
+  std::vector<SessionScan> wrong = right;
+  wrong[0].pose_map_robot.x += 0.3;
+  EXPECT_LT(worst(right, aligned(wrong, street()), 0, 1).position, 0.05);
+}
+
 TEST(SessionAlignment, LeavesRightPosesWhereTheyAre) {
   const auto right = driveThrough(street());
   EXPECT_LT(worst(right, aligned(right, street()), 0, right.size()).position, 0.02);
@@ -119,7 +126,7 @@ TEST(SessionAlignment, MovedPolesDoNotMoveTheSession) {
   EXPECT_LT(worst(right, result, 0, right.size()).position, 0.06);
 }
 
-// Where the map has too few poles, the correction fades over `align_length_m`.
+// Where the map has too few poles, the correction fades over 100 m.
 TEST(SessionAlignment, WithoutEnoughPolesItFollowsTheNeighbours) {
   auto map = street();
   map.erase(std::remove_if(map.begin(), map.end(), [](const auto& p) { return p.x > 150; }),

@@ -145,6 +145,8 @@ TEST_F(PcdFileTest, RefusesWhatIsNoPcd) {
   expectIn(refusal("FIELDS x y z\nCOUNT 1 1 5000\nDATA ascii\n"), "field z", "COUNT 5000");
   expectIn(refusal("FIELDS x y z\nWIDTH\nDATA ascii\n"), ":2: ", "WIDTH");
   expectIn(refusal(header("x y z", "4 4 4", "F F F", 1, "packed")), ":11: ", "'packed'");
+  expectIn(refusal("FIELDS x y z\nWIDTH 1000000000000\nHEIGHT 1000000000000\nDATA ascii\n"),
+           "WIDTH times HEIGHT is too large");
   EXPECT_REFUSED(readPcd(path("no.pcd")), "no.pcd", "No such file");
 }
 

@@ -192,6 +192,32 @@ TEST_F(Rosbag2Test, TheGyroscopeGivesTheYaw) {
   EXPECT_NEAR(motion.covariance(2, 2), 10 * 0.09 * 1e-4 + 1e-8, 1e-9);
 }
 
+TEST_F(Rosbag2Test, WhereTheImuWasSilentTheOdometryGivesTheYaw) {
+  writeDrive(7, {});
+  const int imu = bag->topic("/imu", imu2);
+  for (int i = 0; i < 80; ++i)  // silent from 0.16 to 0.44 s, and then turning the other way
+    if (i <= 16 || i >= 44)
+      bag->add(imu, i, imuMessage(kStart + 0.01 * i, "base_link", {0, 0, i < 44 ? 1.0 : -3.0}, 0));
+  options.topics.imu = "/imu";
+  const ScanFolder folder = load();
+  ASSERT_EQ(folder.scans.size(), 5u);
+  expectNote(folder, "2 of 7 scans left out");
+  EXPECT_NEAR(folder.scans[1].motion->mean.yaw, 0.1, 1e-6);
+  EXPECT_NEAR(folder.scans[2].motion->mean.yaw, 0.15, 1e-6) << "0.3 s at 0.5 rad/s";
+  EXPECT_NEAR(folder.scans[3].motion->mean.yaw, -0.3, 1e-6);
+}
+
+TEST_F(Rosbag2Test, VelocitiesOfTheOdometryAreNotNeeded) {
+  bag->add(clouds, 0, cloudAt(0.5));
+  TestOdometry pose;
+  pose.speed = NAN;
+  for (const double time : {0.4, 0.6}) {
+    pose.time = time;
+    bag->add(odometry, 0, odometryAt(pose));
+  }
+  EXPECT_EQ(load().scans.size(), 1u);
+}
+
 TEST_F(Rosbag2Test, AnImuOfUnknownPoseIsTakenAsUpright) {
   writeDrive(3, {});
   const int imu = bag->topic("/imu", imu2);

@@ -230,12 +230,24 @@ TEST_F(PoleLocalizationFaults, OfTooManyPolesTheMostConfidentAreUsed) {
   }
 }
 
-TEST_F(PoleLocalizationFaults, BadOdometryIsRefusedByNameAndChangesNothing) {
+TEST_F(PoleLocalizationFaults, TheMotionOfTheFirstFrameIsIgnored) {
+  drive(20);
+  frames[0].motion.reset();
+  const auto expected = run();
+  for (const double x : {static_cast<double>(NAN), 5e6}) {
+    frames[0].motion = PoseWithCovariance{{x, 0, 0}, Eigen::Matrix3d::Identity()};
+    const auto updates = run();
+    for (std::size_t i = 0; i < updates.size(); ++i) {
+      EXPECT_EQ(updates[i].estimate->mean.x, expected[i].estimate->mean.x) << i;
+      EXPECT_EQ(updates[i].odometryErrors.covariance, expected[i].odometryErrors.covariance);
+    }
+  }
+}
+
+TEST_F(PoleLocalizationFaults, BadScansAreRefusedByNameAndChangeNothing) {
   drive(20);
   LocalizationPipeline localization = started(), untouched = started();
-  const auto refused = [&](const PoseWithCovariance& motion, const char* word) {
-    PoleScan bad = frames[10];
-    bad.motion = motion;
+  const auto refusedScan = [&](const PoleScan& bad, const char* word) {
     try {
       localization.step(bad);
       FAIL() << word;
@@ -243,6 +255,11 @@ TEST_F(PoleLocalizationFaults, BadOdometryIsRefusedByNameAndChangesNothing) {
       EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
       EXPECT_NE(std::string(error.what()).find("scan at"), std::string::npos) << error.what();
     }
+  };
+  const auto refused = [&](const PoseWithCovariance& motion, const char* word) {
+    PoleScan bad = frames[10];
+    bad.motion = motion;
+    refusedScan(bad, word);
   };
   for (std::size_t i = 0; i < 10; ++i) localization.step(frames[i]), untouched.step(frames[i]);
   PoseWithCovariance indefinite = *frames[10].motion, huge = indefinite, notANumber = indefinite;
@@ -252,6 +269,11 @@ TEST_F(PoleLocalizationFaults, BadOdometryIsRefusedByNameAndChangesNothing) {
   refused(indefinite, "negative eigenvalue");
   refused(huge, "too uncertain");
   refused(notANumber, "not finite");
+  // The error of the scale, which may be 2 %, is added to what the odometry says of itself.
+  refused({{900, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity()}, "too uncertain");
+  PoleScan nowhere = frames[10];
+  nowhere.poles_robot.at(1).y = NAN;
+  refusedScan(nowhere, "pole 1 has");
   PoleScan early = frames[10];
   early.time = frames[8].time;
   EXPECT_THROW(localization.step(early), Error);

@@ -333,7 +333,7 @@ TEST(PoleParticleFilter, RefusesOptionsOutOfRange) {
   EXPECT_THROW(PoleParticleFilter(smallMap(), options, 1), Error);
 }
 
-TEST(PoleParticleFilter, WhatTheLikelihoodRefusesIsSaidInFull) {
+TEST(PoleParticleFilter, APoleWithAFaultIsRefused) {
   const PoleStreet street = makeStreet({});
   const auto map = std::make_shared<CPoleMap>(*street.map);
   map->likelihoodOptions.weighted = true;
@@ -343,7 +343,8 @@ TEST(PoleParticleFilter, WhatTheLikelihoodRefusesIsSaidInFull) {
   localizer.start(start);
   PoleScan frame = street.frames[0];
   frame.poles_robot[0].confidence = 2;
-  EXPECT_REFUSED(localizer.step(frame), "pole detection 0 has a confidence outside [0, 1]");
+  EXPECT_REFUSED(localizer.step(frame),
+                 "scan at 100.000000 s: pole 0 has a confidence outside [0, 1]");
 }
 
 TEST(PoleParticleFilter, RefusesToStepBeforeTheStart) {

@@ -143,6 +143,24 @@ TEST(ObservationPoints, TheTimeBetweenPacketsTellsTheModel) {
   EXPECT_HAS(contradiction("HDL32", 1327.1), "every 1327 microseconds, as those of the VLP-16 do");
 }
 
+TEST(ObservationPoints, PacketsWithAClockThatWasSetTellNoTiming) {
+  if (!std::filesystem::exists(kDatasets)) GTEST_SKIP() << kDatasets << " is not there";
+  const auto scan =
+      std::dynamic_pointer_cast<CObservationVelodyneScan>(firstOf("test_velodyne_VLP16.rawlog"));
+  ASSERT_TRUE(scan);
+  ObservationPoints points(vlp16().sensor);
+  points.read(*scan);
+  ASSERT_TRUE(points.timing());
+  EXPECT_NEAR(points.timing()->seconds, 0.1, 0.002);
+  std::uint32_t stamp = 0;
+  char* at = reinterpret_cast<char*>(&scan->scan_packets[9]) + sizeof scan->scan_packets[9].blocks;
+  std::memcpy(&stamp, at, sizeof stamp);
+  stamp -= 500'000;
+  std::memcpy(at, &stamp, sizeof stamp);
+  points.read(*scan);
+  EXPECT_FALSE(points.timing());
+}
+
 TEST(ObservationPoints, PacketsDecodedForAnotherModelAreNoticed) {
   if (!std::filesystem::exists(kDatasets)) GTEST_SKIP() << kDatasets << " is not there";
   const auto scan =

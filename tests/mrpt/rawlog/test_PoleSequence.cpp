@@ -137,9 +137,47 @@ TEST_F(PoleSequenceTest, OdometryFarFromTheScanIsUnknown) {
                                    samples::bytesOf(poles(3)) + samples::bytesOf(poles(5)));
   ASSERT_EQ(sequence.frames.size(), 4u);
   EXPECT_FALSE(sequence.frames[1].motion);
-  expectMotion(sequence.frames[2], 1, 0, 0);  // valid for 0.4 s before the first reading
+  // The first motion went on in the 0.4 s before the first reading.
+  expectMotion(sequence.frames[2], 1 + 0.4 / 0.6, 0, 0);
   EXPECT_FALSE(sequence.frames[3].motion);
   EXPECT_EQ(sequence.counts.unknownMotions, 2u);
+}
+
+// A vehicle does not stand still because its odometry begins a little late, or ends early.
+TEST_F(PoleSequenceTest, BeyondTheOdometryTheVehicleDrivesOn) {
+  std::string bytes;
+  for (int i = 0; i <= 20; ++i) {
+    if (i >= 4 && i <= 16) bytes += odometry(0.1 * i + 0.05, {0.5 * i, 0, 0.02 * i});
+    bytes += samples::bytesOf(poles(0.1 * i));
+  }
+  const auto sequence = bench.read(bytes);
+  ASSERT_EQ(sequence.frames.size(), 21u);
+  EXPECT_EQ(sequence.counts.unknownMotions, 0u);
+  for (std::size_t i = 1; i < 21; ++i) {
+    const Pose2D& motion = sequence.frames[i].motion->mean;
+    EXPECT_NEAR(std::hypot(motion.x, motion.y), 0.5, 2e-3) << i;
+    EXPECT_NEAR(motion.yaw, 0.02, 1e-6) << i;
+  }
+}
+
+TEST_F(PoleSequenceTest, OfSeveralOdometriesTheFirstIsUsed) {
+  const auto wheels = [](const std::string& label, double time, double x) {
+    mrpt::obs::CObservationOdometry reading;
+    reading.sensorLabel = label;
+    reading.timestamp = mrpt::Clock::fromDouble(time);
+    reading.odometry = mrpt::poses::CPose2D(x, 0, 0);
+    return samples::bytesOf(reading);
+  };
+  std::string bytes;
+  for (int i = 0; i < 10; ++i)
+    bytes +=
+        wheels("wheels", i, 2 * i) + wheels("camera", i, 1000 + i) + samples::bytesOf(poles(i));
+  const auto sequence = bench.read(bytes);
+  ASSERT_EQ(sequence.frames.size(), 10u);
+  for (std::size_t i = 1; i < 10; ++i) expectMotion(sequence.frames[i], 2, 0, 0);
+  EXPECT_EQ(sequence.counts.odometryJumps, 0u);
+  EXPECT_EQ(sequence.counts.otherSensors, 10u);
+  EXPECT_EQ(sequence.counts.otherLabels.count("mrpt::obs::CObservationOdometry camera"), 1u);
 }
 
 TEST_F(PoleSequenceTest, ManyScansWithoutOdometryDoNotPileUp) {

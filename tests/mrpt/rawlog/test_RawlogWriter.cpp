@@ -34,7 +34,7 @@ CActionCollection move(CActionRobotMovement2D::TEstimationMethod method) {
 TEST(RawlogWriter, TheCommentIsThatOfMrpt) {
   const samples::Folder folder("RawlogComment");
   RawlogWriter writer(folder / "s.rawlog");
-  writer.writeComment("said");
+  writer.writeComment("said", 12.5);
   writer.write(samples::observation());
   writer.commit();
   RawlogReader reader(folder / "s.rawlog");

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include <polemcl/core/common/Types.h>
 #include "report/batch/BatchResults.h"
@@ -31,8 +32,7 @@ TEST(BatchResults, ValuesBeyondTheHistogramAreCountedAtItsEnds) {
   for (double value : {0.0, 1e-5, 1e4}) histogram.add(value);
   EXPECT_EQ(histogram.counts.front(), 2u);
   EXPECT_EQ(histogram.counts.back(), 1u);
-  histogram.add(histogram);
-  EXPECT_EQ(histogram.total(), 6u);
+  EXPECT_EQ(std::accumulate(histogram.counts.begin(), histogram.counts.end(), 0u), 3u);
   EXPECT_THROW(histogram.add(-0.1), Error);
   EXPECT_THROW(histogram.add(noFigure), Error);
 }

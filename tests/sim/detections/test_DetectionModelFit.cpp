@@ -6,6 +6,7 @@
 #include "sim/detections/DetectionSampler.h"
 #include "sim/detections/DetectionSummary.h"
 #include "support/DetectionModels.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_detection_model_fit {
 
@@ -17,8 +18,11 @@ struct Drawn {
   std::vector<std::unique_ptr<SimulatedDrive>> drives;
   std::vector<ObservedDrive> observed;
 
-  void add(const DetectionModel& model, std::uint64_t seed, int day, double length = 60) {
+  void add(const DetectionModel& model, std::uint64_t seed, int day, double length = 60,
+           double spacing = SimulationOptions().spacing, double height = 1) {
     SimulationOptions options;
+    options.spacing = spacing;
+    options.height = height;
     options.world.length = length;
     options.world.seed = seed;
     options.world.day = day;
@@ -91,6 +95,23 @@ TEST(DetectionModelFit, WantsOneStreetOnTwoDays) {
   twoStreets.add(model, 4, 1);
   EXPECT_THROW(twoStreets.fit(), Error);
   EXPECT_THROW(fitDetectionModel({}, 40, ""), Error);
+}
+
+TEST(DetectionModelFit, WantsOneLidarAtOneHeightAndSpacing) {
+  const DetectionModel model = testing_sim::plainModel();
+  const auto fitted = [&](double spacing, double height, double range) {
+    Drawn drawn;
+    for (const int day : {0, 1}) drawn.add(model, 3, day);
+    DetectionModel other = model;
+    other.height = height;
+    for (const int day : {0, 1}) drawn.add(other, 4, day, 60, spacing, height);
+    const auto& seen = drawn.observed;
+    return fitDetectionModel({{seen[0], seen[1]}, {seen[2], seen[3]}}, range, "drawn");
+  };
+  const double spacing = SimulationOptions().spacing, height = 1;
+  EXPECT_REFUSED(fitted(2 * spacing, height, 40), "differ in spacing_m");
+  EXPECT_REFUSED(fitted(spacing, 2 * height, 40), "differ in [sensor] height_m");
+  EXPECT_REFUSED(fitted(spacing, height, 1.5), "max_range_m");
 }
 
 TEST(DetectionModelFit, RefusesDrivesWithoutPoles) {

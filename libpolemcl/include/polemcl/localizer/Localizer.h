@@ -28,11 +28,12 @@ struct LocalizationMap;      // private to the library
 
 /// \brief What odometry says at one time.
 struct OdometryReading {
-  double time = 0;                        ///< s
-  Pose2D pose;                            ///< of the robot in the frame of the odometry, m and rad
-  std::optional<Velocity> velocity = {};  ///< used at the first scan: no motion leads to it
+  double time = 0;  ///< s
+  Pose2D pose;      ///< of the robot in the frame of the odometry, m and rad
+  /// Used at the first scan, to which no motion leads; passed over unless finite.
+  std::optional<Velocity> velocity = {};
   /// Covariance of (vx, vy, yaw rate), m²/s², m·rad/s², rad²/s², with errors that are independent
-  /// from reading to reading. None, zero or negative: `[motion]` says how exact motions are.
+  /// from reading to reading. None, or no covariance: `[motion]` says how exact motions are.
   std::optional<Eigen::Matrix3d> velocityCovariance = {};
 };
 
@@ -43,7 +44,8 @@ struct OdometryReading {
 ///   if (update.estimate) drive(update.estimate->mean, update.health);
 /// \endcode
 /// The same settings, seed, scans and odometry give the same poses. Not for several threads at
-/// once.
+/// once. What was moved from can only be destroyed or assigned to. A new start() takes times that
+/// begin again.
 class POLEMCL_EXPORT Localizer {
  public:
   /// \param map A `.polemap`. \throws Error when it cannot be read or has no poles.
@@ -70,7 +72,7 @@ class POLEMCL_EXPORT Localizer {
   bool isStarted() const;
 
   /// \brief The next scan.
-  /// \param time s, greater than that of the scan before.
+  /// \param time s, at least 0, greater than that of the scan before.
   /// \param points One turn of the LiDAR, m, in its frame: x ahead, z up. Rows that are no numbers
   /// or zero are left out.
   /// \param odometry Pose of that frame on the ground, in the frame of the odometry at that time,
@@ -83,7 +85,8 @@ class POLEMCL_EXPORT Localizer {
   /// Velodyne and rotating scans, depth images, CObservationPoles.
   LocalizationUpdate step(const mrpt::obs::CObservation& scan, const Pose2D& odometry);
   /// \brief The same from poles that were found elsewhere. \param poles_robot Frame of the robot;
-  /// of more than 200, the most confident are used.
+  /// of more than 200, the most confident are used. They are corrected for the motion during a turn
+  /// by their `timeOffset` and `turnRate`, which PoleExtractor leaves at 0.
   LocalizationUpdate step(double time, const std::vector<PoleDetection>& poles_robot,
                           const Pose2D& odometry);
 
@@ -95,7 +98,8 @@ class POLEMCL_EXPORT Localizer {
   /// \brief s; a scan that comes later than that after its time finds no odometry.
   static constexpr double keptOdometry = 60;
   /// \brief A reading of the odometry, at any rate. One that is not later than the one before is
-  /// left out. Readings are kept for `keptOdometry`. \throws Error when it is not finite.
+  /// left out; after a second of such readings the clock was set, and the odometry begins anew.
+  /// Readings are kept for `keptOdometry`. \throws Error when time or pose is not finite.
   void addOdometry(const OdometryReading& reading);
   /// \brief Whether there is odometry at `time` or later: the scan of that time can be taken.
   bool hasOdometry(double time) const;
@@ -104,7 +108,7 @@ class POLEMCL_EXPORT Localizer {
   void setRecordedTiming(const ScanTiming& timing);
   /// \brief The next scan; its motion is that of the odometry, interpolated at its time.
   /// \param T_robot_lidar Pose of the frame of the points in the robot's, m.
-  /// \throws Error as step() above, and without odometry within 0.5 s of the scan.
+  /// \throws Error as step() above, and when the readings round the scan are not within 0.5 s.
   LocalizationUpdate step(double time, const PointsView& points,
                           const Eigen::Isometry3d& T_robot_lidar);
   /// \brief Pose of the frame of the odometry in that of the map at the last scan (ROS: `map` to
@@ -112,7 +116,8 @@ class POLEMCL_EXPORT Localizer {
   std::optional<Pose2D> odometryFrame() const;
   /// @}
 
-  /// \brief All scans of a rawlog of scans or poles with odometry; several LiDARs are fused.
+  /// \brief All scans of a rawlog of scans or poles with odometry; several LiDARs are fused. Start
+  /// again before other scans.
   /// \param consume Gets what each scan brings, from changing threads, one call at a time.
   /// \throws Error as step(), and when the rawlog cannot be read.
   void play(const std::string& rawlog,

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/extraction/ExtractionOptions.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
@@ -35,7 +37,10 @@ class POLEMCL_EXPORT Settings {
   /// it gives the same settings, bit for bit.
   std::string text() const;
 
-  const SettingsValues& values() const { return *m_values; }
+  SensorOptions sensor() const;          ///< `[sensor]`, as for PoleExtractor
+  ExtractionOptions extraction() const;  ///< `[extraction] [range_image] [scan_line]`
+
+  const SettingsValues& values() const { return *m_values; }  ///< private to the library
 
  private:
   std::unique_ptr<SettingsValues> m_values;

@@ -19,7 +19,7 @@ struct FusionAgreement {
 };
 
 /// \brief Greatest distance between the places of one pole as two LiDARs see it, m. One LiDAR
-/// reports no two poles that are nearer to each other (`[scan_line] min_spacing_m`).
+/// reports no two poles that are nearer to each other (ScanLineOptions::minSpacing).
 constexpr double samePoleRadius = 0.4;
 
 /// \brief Adds the detections of one more LiDAR. Those that lie, at one moment, within

@@ -32,9 +32,8 @@ class POLEMCL_EXPORT PoleIndex {
   /// \param preparedRadius Searches up to it take one look-up in the grid, wider ones a search of
   ///        nanoflann's tree, m. Give the gate of the likelihood. Memory grows with the poles, not
   ///        with the area.
-  /// \throws Error on a pole whose centre or covariance is not finite or that lies beyond
-  /// `farthest`,
-  ///         or a radius that is not finite and positive.
+  /// \throws Error on a pole that lies beyond `farthest` or whose centre or covariance is not
+  ///         finite; also on a radius that is not finite and positive.
   explicit PoleIndex(const std::vector<MapPole>& poles, double preparedRadius = 1.0);
 
   std::size_t size() const { return m_variances.size(); }

@@ -37,9 +37,9 @@ struct PoleSight {
 };
 
 /// \brief What a scan shows of each pole, in the order of `poles`.
-/// \param points In the cloud frame. \param labels One per point; a pole's returns carry exactly
-/// its
-///        id (foliage of the simulator has another bit set, so it does not count).
+/// \param points In the cloud frame.
+/// \param labels One per point; a pole's returns carry exactly its id. Foliage of the simulator has
+///        another bit set, so it does not count.
 /// \throws Error when the numbers of points and labels differ, or two poles have one id.
 std::vector<PoleSight> sightPoles(const PointsView& points,
                                   const std::vector<std::uint32_t>& labels,

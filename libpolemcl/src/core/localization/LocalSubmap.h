@@ -76,9 +76,8 @@ class POLEMCL_EXPORT LocalSubmap {
   /// distance, opens poles for the rest, drops what is far back or was hardly ever seen.
   /// \param motion Robot's motion since the frame before, in the robot frame before. It is
   ///        ignored for the first frame: the robot starts at the origin.
-  /// \param poles_robot Detections of this frame, robot frame; may be empty. Those with a
-  /// confidence
-  ///        of 0 are not used.
+  /// \param poles_robot Detections of this frame, robot frame; may be empty. A confidence of 0
+  ///        leaves one out.
   /// \throws Error on a motion that is not finite or a detection with a fault, see faultOf().
   ///         Nothing has changed then.
   void add(const Pose2D& motion, const std::vector<PoleDetection>& poles_robot);

@@ -95,7 +95,7 @@ void HealthMonitor::begin(PoseSource source) {
 Health HealthMonitor::update(const HealthInput& input) {
   if (!m_begun) return m_health;
   const bool first = m_viewpoints.empty();
-  if (!first && input.time - m_time > m_maxGap) m_gapUntil = m_driven + input.metres + kConfirm;
+  const bool isGap = !first && input.time - m_time > m_maxGap;
   m_driven += input.metres;
   m_time = input.time;
   remember(input);
@@ -110,12 +110,13 @@ Health HealthMonitor::update(const HealthInput& input) {
   m_health.spread = largestSigma(input.estimate.covariance.topLeftCorner<2, 2>());
   m_health.spreadHeading = std::sqrt(std::max(0.0, input.estimate.covariance(2, 2)));
   confirm(input);
+  if (isGap) m_gapUntil = m_goodDriven + kConfirm;
   judge(input);
   return m_health;
 }
 
-/// A complete viewpoint whose poles match counts in what is usual: like all others at first, then
-/// so that those kUsualWithin metres back have lost most of their weight.
+/// A complete viewpoint whose poles match counts in what is usual: a mean over the drive, which
+/// forgets viewpoints more than kUsualWithin metres back.
 void HealthMonitor::learnUsual() {
   if (m_viewpoints.empty()) return;
   const Viewpoint& last = m_viewpoints.back();
@@ -254,7 +255,7 @@ void HealthMonitor::judge(const HealthInput& input) {
       {!m_confirmed, State::degraded, Reason::converging},
       {(m_isEnough && fewMatched) || m_doubt > kDoubt, State::degraded, Reason::mismatch},
       {wide, State::degraded, Reason::spread},
-      {m_driven < m_gapUntil, State::degraded, Reason::timeGap},
+      {m_goodDriven < m_gapUntil, State::degraded, Reason::timeGap},
       {blind, State::degraded, Reason::noPoles},
       {input.odometryContradicted, State::degraded, Reason::odometry},
       {(m_isEnough && m_health.innovation > kInnovation) || m_rivalDoubt > kRivalDoubt,

@@ -29,10 +29,10 @@ struct HealthInput {
 
 /// \brief Where an assumed pose comes from.
 enum class PoseSource {
-  given,      ///< a start, or one of several answers of a search: matches over 5 m bear it out
-  found,      ///< by a search that is sure of it: 2 m do
-  foundNear,  ///< alike, near a pose that was believed: what led that one astray, such as a LiDAR
-              ///< that was moved, may still be there; 8 m, unless nearly all poles match
+  given,      ///< a start, or one of several answers of a search: confirmed by matches over 5 m
+  found,      ///< by a search that is sure of it: over 2 m
+  foundNear,  ///< by such a search, near a pose that was believed: over 8 m, or 2 m where nearly
+              ///< all poles match. What misled that pose, such as a moved LiDAR, may still be there
 };
 
 /// \brief Follows one run. Deterministic.
@@ -93,8 +93,8 @@ class POLEMCL_EXPORT HealthMonitor {
   /// Poles of the map that fit it, and the metres driven when each last did.
   std::map<std::size_t, double> m_rivalPoles;
   double m_doubt = 0;       ///< log-likelihood ratio of a wrong place, see doubt()
-  double m_goodDriven = 0;  ///< metres in a row with enough matches
-  double m_gapUntil = -1;   ///< metres driven at which a time gap is forgotten
+  double m_goodDriven = 0;  ///< metres with enough matches since begin()
+  double m_gapUntil = 0;    ///< as many of them end a time gap
 };
 
 }  // namespace polemcl

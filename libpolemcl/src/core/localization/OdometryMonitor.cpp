@@ -44,8 +44,9 @@ std::vector<PoleDetection> usable(const std::vector<PoleDetection>& poles) {
   return result;
 }
 
-Eigen::Vector3d vectorOf(const Pose2D& pose) {
-  return {pose.x, pose.y, pose.yaw};
+/// From one motion to another, in the frame that both begin in.
+Eigen::Vector3d difference(const Pose2D& from, const Pose2D& to) {
+  return {to.x - from.x, to.y - from.y, wrapAngle(to.yaw - from.yaw)};
 }
 
 Pose2D scaled(const Pose2D& motion, double factor) {
@@ -65,17 +66,29 @@ bool isCertain(const Eigen::Matrix3d& covariance) {
 /// A share of the change between two motions, as a standard deviation; bounded like the motions of
 /// the filter.
 Eigen::Matrix3d doubt(const Pose2D& from, const Pose2D& to, double share) {
-  const Pose2D change = relative(from, to);
-  const double length = std::hypot(change.x, change.y);
-  const double shorter = length > kMostDoubt ? kMostDoubt / length : 1;
-  const Eigen::Vector3d vector(shorter * change.x, shorter * change.y,
-                               std::clamp(change.yaw, -0.1 * kMostDoubt, 0.1 * kMostDoubt));
-  return share * share * vector * vector.transpose();
+  Eigen::Vector3d change = difference(from, to);
+  const double length = change.head<2>().norm();
+  if (length > kMostDoubt) change.head<2>() *= kMostDoubt / length;
+  change.z() = std::clamp(change.z(), -0.1 * kMostDoubt, 0.1 * kMostDoubt);
+  return share * share * change * change.transpose();
 }
 
 /// How far `value` lies outside the tolerance around 0.
 double outside(double value, double tolerance) {
   return value > tolerance ? value - tolerance : value < -tolerance ? value + tolerance : 0;
+}
+
+/// Distance of another motion from what the odometry allows, in standard deviations.
+/// \param covariance Of their difference, in the frame that both begin in.
+double beyondTolerance(const Pose2D& odometry, const Pose2D& other,
+                       const Eigen::Matrix3d& covariance) {
+  Eigen::Vector3d rest = difference(odometry, other);
+  const double way = std::hypot(odometry.x, odometry.y);
+  const double length = rest.head<2>().norm();
+  const double left = outside(length, kTolerance + kScaleTolerance * way);
+  rest.head<2>() *= length > 0 ? left / length : 0;
+  rest.z() = outside(rest.z(), kTurnTolerance + kScaleTolerance * std::abs(odometry.yaw));
+  return std::sqrt(std::max(0.0, rest.dot(covariance.inverse() * rest)));
 }
 
 }  // namespace
@@ -152,23 +165,10 @@ ScanRegistration OdometryMonitor::align(const Reference& reference, const Refere
 }
 
 bool OdometryMonitor::suffices(const ScanRegistration& alignment, const Reference& reference,
-                               const Reference& now) const {
+                               const Reference& now) {
   const auto fewer = static_cast<double>(std::min(reference.poles.size(), now.poles.size()));
   return alignment.pairs >= kMinPairs && alignment.pairs >= kMinShare * fewer &&
          isCertain(alignment.covariance);
-}
-
-/// Distance of another motion from what the odometry allows, in standard deviations.
-double OdometryMonitor::beyondTolerance(const Pose2D& odometry, const Pose2D& other,
-                                        const Eigen::Matrix3d& covariance) const {
-  const Pose2D difference = relative(odometry, other);
-  const double way = std::hypot(odometry.x, odometry.y);
-  const double length = std::hypot(difference.x, difference.y);
-  const double left = outside(length, kTolerance + kScaleTolerance * way);
-  Eigen::Vector3d rest = vectorOf(difference);
-  rest.head<2>() *= length > 0 ? left / length : 0;
-  rest.z() = outside(difference.yaw, kTurnTolerance + kScaleTolerance * std::abs(odometry.yaw));
-  return std::sqrt(std::max(0.0, rest.dot(covariance.inverse() * rest)));
 }
 
 OdometryMonitor::Finding OdometryMonitor::compare(const Reference& reference, const Reference& now,
@@ -185,10 +185,10 @@ OdometryMonitor::Finding OdometryMonitor::compare(const Reference& reference, co
   covariance += Eigen::Vector3d(kLeastSigma * kLeastSigma + carried,
                                 kLeastSigma * kLeastSigma + carried, kLeastTurn * kLeastTurn)
                     .asDiagonal();
-  finding.beyond = beyondTolerance(odometry, found.motion, covariance);
+  const double beyond = beyondTolerance(odometry, found.motion, covariance);
   const ScanRegistration stated =
       judgeMotion(reference.poles, now.poles, odometry, RegistrationOptions());
-  const bool contradicts = finding.beyond > kSigmas && found.score >= stated.score + kMargin;
+  const bool contradicts = beyond > kSigmas && found.score >= stated.score + kMargin;
   finding.verdict = contradicts ? OdometryVerdict::contradicted : OdometryVerdict::agrees;
   return finding;
 }

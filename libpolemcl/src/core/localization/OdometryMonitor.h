@@ -12,6 +12,7 @@
 /// poles' motion takes its place, until both agree again for a while. See share/doc/health.md.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <deque>
 #include <vector>
 
@@ -62,7 +63,6 @@ class POLEMCL_EXPORT OdometryMonitor {
   struct Finding {
     OdometryVerdict verdict = OdometryVerdict::unknown;
     ScanRegistration alignment;
-    double beyond = 0;  ///< of the odometry, outside the tolerance, standard deviations
   };
   enum class State {
     believed,     ///< the odometry is handed out
@@ -71,10 +71,8 @@ class POLEMCL_EXPORT OdometryMonitor {
   };
   Finding compare(const Reference& reference, const Reference& now, bool search) const;
   ScanRegistration align(const Reference& reference, const Reference& now, bool search) const;
-  bool suffices(const ScanRegistration& alignment, const Reference& reference,
-                const Reference& now) const;
-  double beyondTolerance(const Pose2D& odometry, const Pose2D& other,
-                         const Eigen::Matrix3d& covariance) const;
+  static bool suffices(const ScanRegistration& alignment, const Reference& reference,
+                       const Reference& now);
   std::vector<std::size_t> chosen(double time) const;
   MonitoredMotion watch(Reference& now, const MonitoredMotion& odometry);
   MonitoredMotion contradict(Reference& now, const Reference& reference,
@@ -95,10 +93,11 @@ class POLEMCL_EXPORT OdometryMonitor {
   Pose2D m_speed;  ///< of the last motion handed out, per second
   /// Poles that could be seen again, and those that were; the start counts like a few scans.
   double m_counted = 20, m_seenAgain = 10;
-  Pose2D m_speedSeen;         ///< the last one with a pole that was seen again
-  double m_chance = 1;        ///< that no pole was seen again since the last one that was
-  double m_possibleTime = 0;  ///< when the odometry last was possible, or the poles agreed, s
-  double m_knownTime = 0;     ///< when the poles last told the motion, while contradicted, s
+  Pose2D m_speedSeen;   ///< the last one with a pole that was seen again
+  double m_chance = 1;  ///< that no pole was seen again since the last one that was
+  /// When the odometry last was possible, or the poles agreed, s.
+  double m_possibleTime = -INFINITY;
+  double m_knownTime = 0;  ///< when the poles last told the motion, while contradicted, s
   /// Time of the scan that later scans are aligned with while contradicted, s. Several scans share
   /// one such scan: chains of every third scan would drift apart.
   double m_keyTime = 0;

@@ -101,7 +101,7 @@ struct AdjustmentFactors {
   FixFactors gnss;
 };
 
-/// \brief Scans before the first motion of each drive and after it, numbered: the drive of each.
+/// \brief The number of the drive that each scan belongs to. A scan without a motion begins one.
 std::vector<std::size_t> drivesOf(const std::vector<DrivenScan>& scans);
 
 /// \brief The problem as it stands; all arguments must outlive it.

@@ -7,13 +7,13 @@
 /// Whether a pole stands is told by PoleExistence, from the scans that found it and those that
 /// could have (in range and, by their visibility range, in view).
 
+#include <cstddef>
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
 #include <polemcl/export.h>
 #include "core/common/Binder.h"
-#include "core/mapping/AlignmentOptions.h"
 #include "core/mapping/PoleExistence.h"
 
 namespace polemcl {
@@ -56,6 +56,14 @@ struct SessionScan {
   /// Covariance of pose_map_robot (x, y, yaw; m², m·rad, rad²), beyond `[map] pose_sigma_m` and
   /// `heading_sigma_deg`. Zero: a pose of the truth.
   Eigen::Matrix3d poseCovariance = Eigen::Matrix3d::Zero();
+};
+
+/// \brief What the alignment of one session to the map did.
+struct AlignmentSummary {
+  std::size_t scans = 0;    ///< scans in pieces with enough poles of the map
+  double meanShift = 0;     ///< mean length of the corrections of these scans, m
+  double largestShift = 0;  ///< m
+  double largestTurn = 0;   ///< rad
 };
 
 /// \brief What a session changed.

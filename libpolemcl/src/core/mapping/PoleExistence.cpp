@@ -18,8 +18,7 @@ double logOdds(double probability) {
 }  // namespace
 
 bool isDate(double seconds) {
-  constexpr double day = 86400;  // s
-  return seconds >= day;
+  return seconds >= kDay;
 }
 
 void noteSeen(PoleHistory& history, double seconds) {

@@ -42,7 +42,7 @@ POLEMCL_EXPORT bool isDate(double seconds);
 POLEMCL_EXPORT void noteSeen(PoleHistory& history, double seconds);
 
 /// \brief Chance that a pole is found in a scan that could see it: from its counts, with
-/// `detection` counting as 20 scans; at most `detection`, and at least twice `falseDetection`, so
+/// kDetection counting as 20 scans; at most kDetection, and at least twice kFalseDetection, so
 /// that misses always count against it.
 POLEMCL_EXPORT double detectionChance(const PoleHistory& history);
 
@@ -79,7 +79,7 @@ class POLEMCL_EXPORT ExistenceLikelihood {
   SectionSum m_inView, m_all;
 };
 
-/// \brief Probability after a session, kept within `certain`.
+/// \brief Probability after a session, kept within kCertain.
 POLEMCL_EXPORT double updated(double existence, double logRatio);
 
 }  // namespace polemcl

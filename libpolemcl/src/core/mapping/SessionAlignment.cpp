@@ -124,7 +124,7 @@ Pair Alignment::makePair(std::size_t scan, std::uint32_t detection, std::uint32_
       pair.error - by.head<2>() - by.z() * Eigen::Vector2d(-pair.arm.y(), pair.arm.x());
   const double robust = s_halfway / (s_halfway + left.dot(pair.information * left));
   // Scans near each other show a pole from the same side, with the same error.
-  const double step = scan > 0 ? m_along[scan] - m_along[scan - 1] : 0;
+  const double step = scan > 0 ? m_along[scan] - m_along[scan - 1] : kDecorrelation;
   const double newShare = std::min(1.0, step / kDecorrelation);
   pair.information *= robust * robust * newShare * seen.confidence;
   return pair;

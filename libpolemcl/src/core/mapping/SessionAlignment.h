@@ -4,11 +4,11 @@
 /// to the library.
 ///
 /// The error of the poses is a Gauss-Markov process along the path: a zero mean, the standard
-/// deviations and the correlation length of MapUpdateOptions. Each detection of a map pole measures
-/// it. A Kalman filter with the smoother of Rauch, Tung and Striebel (1965) estimates the errors of
-/// all scans; pairs are formed anew in each of several rounds, and are weighted by Geman and
-/// McClure's function, so that poles which have moved do not move the session. The map is the
-/// anchor: it does not change here.
+/// deviations MapUpdateOptions::sessionSigma and 0.4 degrees, correlated over 100 m. Each detection
+/// of a map pole measures it. A Kalman filter with the smoother of Rauch, Tung and Striebel (1965)
+/// estimates the errors of all scans; pairs are formed anew in each of several rounds, and are
+/// weighted by Geman and McClure's function, so that poles which have moved do not move the
+/// session. The map is the anchor: it does not change here.
 
 #include <vector>
 

@@ -43,9 +43,8 @@ struct BeamTableEstimate {
 
 /// \brief Finds the beams. The order of the points does not matter, down to the last bit.
 /// \param scans Clouds of one sensor in its own axes, z up or down; NaN and zeros are passed over.
-/// \throws Error when there are too few points, or no beams in them (clouds that were merged,
-/// thinned
-///         by voxels, or tilted).
+/// \throws Error when there are too few points, or no beams in them: clouds that were merged,
+///         thinned by voxels, or tilted.
 BeamTableEstimate estimateBeamTable(const std::vector<PointsView>& scans);
 
 }  // namespace polemcl

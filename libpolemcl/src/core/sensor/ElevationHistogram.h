@@ -37,7 +37,7 @@ class ElevationHistogram {
   std::vector<double> m_sums;
 };
 
-/// \brief Horizontal range and height over the origin, and whether the return counts.
+/// \brief Horizontal range and height over the origin.
 struct BeamCoordinates {
   double rho, z;
 };

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/common/PointsCopy.h"
+#include "core/common/Statistics.h"
 #include "core/sensor/GroundPlane.h"
 #include "core/sensor/SensorIdentification.h"
 
@@ -102,10 +103,8 @@ std::string wrongUnit(const PointsView& points, const SensorOptions& options) {
   }
   if (ranges.size() < SensorConfigCheck::kFewestPoints) return {};
   const auto rank = [&](double share) {
-    const auto at = ranges.begin() +
-                    static_cast<std::ptrdiff_t>(share * static_cast<double>(ranges.size() - 1));
-    std::nth_element(ranges.begin(), at, ranges.end());
-    return *at;
+    return elementOfRank(ranges,
+                         static_cast<std::size_t>(share * static_cast<double>(ranges.size() - 1)));
   };
   const bool far = rank(kLeastUsable) > options.maxRange;
   if (!far && rank(1 - kLeastUsable) >= options.minRange) return {};

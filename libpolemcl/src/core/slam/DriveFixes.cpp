@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Statistics.h"
 #include "core/common/Transform.h"
 
 namespace polemcl {
@@ -42,11 +43,10 @@ Pose2D bestMotion(const std::vector<Eigen::Vector2d>& from,
 /// Indices of the distances that are not far above the median.
 std::vector<std::size_t> fitting(const std::vector<double>& distances) {
   std::vector<double> sorted = distances;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double middle = elementOfRank(sorted, sorted.size() / 2);
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < distances.size(); ++i)
-    if (distances[i] <= kFarOff * *middle) near.push_back(i);
+    if (distances[i] <= kFarOff * middle) near.push_back(i);
   return near;
 }
 

@@ -24,8 +24,8 @@ struct ClosedLoop {
 struct DrivesToMap {
   std::vector<DrivenScan> scans;
   std::vector<std::string> names;  ///< of the drives, for messages
-  /// Number of scans at the begin, all of the first drives, whose poses are known and stay. Of the
-  /// others only those where a drive begins count, and only the first is where it begins.
+  /// The first `known` scans are all of the first drives; their poses stay. Of a later drive only
+  /// the pose of its first scan is read: where it begins.
   std::size_t known = 0;
   /// Covariances of the known poses, relative to the first one. Zero for a true pose; empty if all
   /// are true.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -54,7 +55,10 @@ class HeaderReader {
   Header read() {
     while (!m_ended) takeLine();
     if (m_header.fields.empty()) throw Error(m_file.string() + ": no FIELDS in its header");
-    m_header.points = m_points.value_or(m_width.value_or(0) * m_height.value_or(1));
+    const std::size_t width = m_width.value_or(0), height = m_height.value_or(1);
+    if (height > 0 && width > std::numeric_limits<std::size_t>::max() / height)
+      throw Error(m_file.string() + ": WIDTH times HEIGHT is too large");
+    m_header.points = m_points.value_or(width * height);
     layOut();
     return m_header;
   }

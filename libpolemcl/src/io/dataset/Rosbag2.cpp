@@ -164,7 +164,8 @@ void noteTransforms(const Bag& bag, ScanFolder& folder) {
           "format, for --odometry");
 }
 
-/// Adds the positions from satellites. Nobody needs them, so several topics are no error.
+/// Adds the positions from satellites. They are optional: of several topics none is taken, with a
+/// note.
 void findFixes(const Bag& bag, const std::string& name, const FrameTree& frames,
                const std::string& robot, ScanFolder& folder) {
   std::optional<std::size_t> topic;

@@ -24,6 +24,7 @@ struct MeasuredTrack {
   TrackSampler poses;  ///< in the odometry frame; of an IMU, the yaw only
   MotionSteps steps;   ///< those with covariances
   std::size_t messages = 0, uncertain = 0, unordered = 0;  ///< all; without covariance; not later
+  std::vector<double> gapEnds;  ///< of an IMU: times of the messages that came too late, s
 };
 
 void noteTrack(const BagTopic& topic, const MeasuredTrack& track, std::vector<std::string>& notes) {
@@ -101,6 +102,7 @@ MeasuredTrack readImu(const Bag& bag, std::size_t topic, const std::vector<doubl
     const double time = imu.header.time, rate = axis.dot(imu.rate), dt = time - lastTime;
     const bool first = track.messages == 1;
     if (!first && dt > 0) yaw += dt * (lastRate + rate) / 2;
+    if (!first && dt > kImuGap) track.gapEnds.push_back(time);
     if (!track.poses.add(time, spatial({0, 0, wrapAngle(yaw)}))) {
       ++track.unordered;
       continue;
@@ -129,6 +131,11 @@ Pose2D motionOf(const MeasuredTrack& track, const ScanInterval& interval) {
   return planar(poses[interval.from]->inverse() * *poses[interval.to]);
 }
 
+bool hasGap(const MeasuredTrack& track, const ScanInterval& interval) {
+  const auto end = std::upper_bound(track.gapEnds.begin(), track.gapEnds.end(), interval.begin);
+  return end != track.gapEnds.end() && *end <= interval.end;
+}
+
 PoseWithCovariance motionBetween(const MeasuredTrack& odometry,
                                  const std::optional<MeasuredTrack>& imu,
                                  const ScanInterval& interval) {
@@ -136,7 +143,7 @@ PoseWithCovariance motionBetween(const MeasuredTrack& odometry,
   motion.mean = motionOf(odometry, interval);
   const auto stated = odometry.steps.covarianceBetween(interval.begin, interval.end);
   motion.covariance = stated.value_or(proportionalCovariance(motion.mean, kDefaultMotionNoise));
-  if (imu) {
+  if (imu && !hasGap(*imu, interval)) {
     const double yaw = motionOf(*imu, interval).yaw;
     // On an arc the chord points along the mean of both headings.
     const double turn = wrapAngle(yaw - motion.mean.yaw) / 2;

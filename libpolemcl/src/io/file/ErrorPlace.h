@@ -10,7 +10,7 @@ namespace polemcl::io {
 
 /// \brief What `work` returns. \throws Error as `work` does, with `where` before its message.
 template <class Work>
-auto located(const std::string& where, const Work& work) {
+decltype(auto) located(const std::string& where, const Work& work) {
   try {
     return work();
   } catch (const Error& error) {

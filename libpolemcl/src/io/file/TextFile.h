@@ -30,7 +30,7 @@ class LineReader {
   /// \throws Error when the file cannot be opened.
   explicit LineReader(const std::filesystem::path& file);
   /// \return False at the end. \throws Error when the file cannot be read, is truncated, or holds
-  ///         more than `mostTextBytes` (ReadLimits.h).
+  ///         more than allowed (ReadLimits.h).
   bool next(std::string& line);
 
  private:

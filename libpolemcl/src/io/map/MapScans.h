@@ -11,6 +11,8 @@
 ///   detections; uint32 number of visibility ranges after the detections, each float32
 /// - per detection: float64 x, y, radius, bottom, top, confidence, covariance xx, xy, yx, yy,
 ///   uint32 points
+/// - not by 1.0.0, per session: uint64 number of covariances (0, or that of its scans), each
+///   float64 xx, xy, xyaw, yy, yyaw, yawyaw
 
 #include <string>
 #include <string_view>

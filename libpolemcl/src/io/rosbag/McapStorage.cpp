@@ -169,8 +169,7 @@ void McapStorage::checkSummary(const McapRecord& footer) const {
     requireChecksum(m_file.read(start, end - start), checksum, m_file.where() + "summary ");
 }
 
-/// Collects the messages of all chunks. Only chunks that their index does not tell are
-/// decompressed.
+/// Collects the messages of all chunks. Chunks without a usable index are decompressed.
 void McapStorage::completeIndex() {
   for (std::size_t i = 0; i < m_chunks.size(); ++i) {
     auto& messages = m_inChunks[i];

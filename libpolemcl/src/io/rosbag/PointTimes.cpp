@@ -19,7 +19,8 @@ constexpr double kOnLine =
     10 * degree;                      ///< beams of one moment differ in azimuth by less than this
 constexpr double kLeastOnLine = 0.9;  ///< share of the points
 constexpr double kMostSpread = 15 * degree;  ///< of the azimuth at the stamp, from scan to scan
-constexpr double kRoundedStamp = 0.005;      ///< so near to begin or end of the turn, it is there
+constexpr double kRoundedStamp =
+    0.005;  ///< s; a stamp so near to begin or end of the turn is there
 
 /// Points of a scan.
 struct TimedPoints {

@@ -61,9 +61,8 @@ RosOdometry decodeOdometry(std::string_view message, const std::string& where) {
   odometry.header = readHeader(reader);
   odometry.child = readFrame(reader);
   odometry.T_odom_child = readPose(reader);
-  readCovariance<6>(reader);  // of the pose, which grows without limit
-  readVector(reader);         // linear velocity
-  readVector(reader);         // angular velocity
+  readCovariance<6>(reader);                         // of the pose, which grows without limit
+  for (int i = 0; i < 6; ++i) reader.get<double>();  // velocities
   odometry.twistCovariance = readCovariance<6>(reader);
   return odometry;
 }

@@ -8,6 +8,7 @@
 
 #include "core/common/Binder.h"
 #include "core/common/PoleIndex.h"
+#include "core/common/Statistics.h"
 #include "core/localization/PoseModes.h"
 #include "mrpt/filter/MotionAction.h"
 
@@ -46,6 +47,12 @@ void requireFinite(const Pose2D& start) {
   throw Error(text.str());
 }
 
+void requireRadius(double radius) {
+  if (!(radius >= 0 && std::isfinite(radius)))
+    throw Error("the radius round the start, " + std::to_string(radius) +
+                " m, must be a number of at least 0");
+}
+
 bool isWide(const Eigen::Matrix3d& covariance) {
   const double square = LocalizationPipeline::wideMetres * LocalizationPipeline::wideMetres;
   return covariance(0, 0) > square || covariance(1, 1) > square ||
@@ -71,9 +78,7 @@ void keepMostConfident(std::vector<PoleDetection>& poles) {
 double medianSigma(const std::vector<MapPole>& poles) {
   std::vector<double> sigmas;
   for (const MapPole& pole : poles) sigmas.push_back(std::sqrt(pole.covariance.trace() / 2));
-  const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
-  std::nth_element(sigmas.begin(), middle, sigmas.end());
-  return *middle;
+  return elementOfRank(sigmas, sigmas.size() / 2);
 }
 
 }  // namespace
@@ -105,6 +110,7 @@ LocalizationPipeline::LocalizationPipeline(LocalizationMap map, const Localizati
 void LocalizationPipeline::start(const StartOptions& start) {
   if (start.pose) {
     requireFinite(*start.pose);
+    requireRadius(start.radius);
     requireNearMap(start.pose->x, start.pose->y, start.radius);
   }
   m_filter.start(start);
@@ -126,7 +132,8 @@ void LocalizationPipeline::requireNearMap(double x, double y, double radius) con
 
 void LocalizationPipeline::initializeGlobally(const std::optional<SearchArea>& area) {
   if (area) {
-    requireFinite({area->centre_map.x(), area->centre_map.y(), area->radius});
+    requireFinite({area->centre_map.x(), area->centre_map.y(), 0});
+    requireRadius(area->radius);
     requireNearMap(area->centre_map.x(), area->centre_map.y(), area->radius);
   }
   m_area = area;
@@ -149,10 +156,14 @@ LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
   if (!m_started)
     throw Error(
         "the localization has not been started: call start() or initializeGlobally() first");
-  requireStep(seen, m_stepped ? std::optional(m_time) : std::nullopt);
+  // Both before anything changes: a correction makes a motion less certain.
+  const auto before = m_stepped ? std::optional(m_time) : std::nullopt;
+  requireStep(seen, before);
+  const PoleScan corrected = calibrated(seen);
+  requireStep(corrected, before);
   LocalizationUpdate update;
   update.time = seen.time;
-  const PoleScan frame = checkedMotion(deskewed(calibrated(seen)), update);
+  const PoleScan frame = checkedMotion(deskewed(corrected), update);
   const Pose2D motion = m_stepped ? frame.motion->mean : Pose2D();
   const double metres = std::hypot(motion.x, motion.y);
   Eigen::Matrix3d covariance = walkCovariance(motion, m_submap.options());
@@ -169,7 +180,8 @@ LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
   doubtSubmap();
   if (searchIsDue()) search(frame, update);
   update.health = m_monitor.health();
-  if (seen.motion) calibrate(*seen.motion, update);
+  if (before) calibrate(*seen.motion, update);
+  update.odometryErrors = m_calibration.errors();
   return update;
 }
 
@@ -187,11 +199,11 @@ PoleScan LocalizationPipeline::calibrated(PoleScan frame) const {
 }
 
 /// Learns the errors of the odometry while the pose is certain.
-void LocalizationPipeline::calibrate(const PoseWithCovariance& motion, LocalizationUpdate& update) {
+void LocalizationPipeline::calibrate(const PoseWithCovariance& motion,
+                                     const LocalizationUpdate& update) {
   const bool certain = update.estimate && update.health.state == HealthState::ok &&
                        !update.relocalized && update.motion != OdometryVerdict::contradicted;
   m_calibration.add(motion.mean, motion.covariance, certain ? &*update.estimate : nullptr);
-  update.odometryErrors = m_calibration.errors();
 }
 
 std::vector<PoleDetection> LocalizationPipeline::polesForFilter(

@@ -128,7 +128,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
 
  private:
   PoleScan calibrated(PoleScan frame) const;
-  void calibrate(const PoseWithCovariance& motion, LocalizationUpdate& update);
+  void calibrate(const PoseWithCovariance& motion, const LocalizationUpdate& update);
   PoleScan deskewed(PoleScan frame);
   PoleScan checkedMotion(const PoleScan& frame, LocalizationUpdate& update);
   std::vector<PoleDetection> polesForFilter(const Pose2D& motion, const Eigen::Matrix3d& covariance,

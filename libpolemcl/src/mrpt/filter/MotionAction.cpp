@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/common/Covariance.h"
+#include "core/common/DetectionCheck.h"
 
 namespace polemcl {
 
@@ -55,8 +56,7 @@ void requireMotion(const PoseWithCovariance& motion) {
 mrpt::obs::CActionCollection::Ptr makeMotionAction(const PoseWithCovariance& motion,
                                                    const FilterOptions& options) {
   requireMotion(motion);
-  // MRPT's sampler takes roots of eigenvalues. The floor of 1 µm and 1 µrad keeps rounding errors
-  // from making them negative.
+  // The floor of 1 µm and 1 µrad keeps rounding errors from making eigenvalues negative.
   const double xy = options.extraSigma * options.extraSigma + 1e-12;
   const double yaw = options.extraSigmaYaw * options.extraSigmaYaw + 1e-12;
   const Eigen::Matrix3d extra = Eigen::Vector3d(xy, xy, yaw).asDiagonal();
@@ -75,6 +75,9 @@ void requireStep(const PoleScan& scan, std::optional<double> before) {
   if (!std::isfinite(scan.time) || (before && scan.time <= *before))
     throw Error("time does not increase: a scan at " + when + " comes after one at " +
                 std::to_string(before.value_or(0)) + " s");
+  for (std::size_t i = 0; i < scan.poles_robot.size(); ++i)
+    if (const char* fault = faultOf(scan.poles_robot[i]))
+      throw Error("scan at " + when + ": pole " + std::to_string(i) + " has " + fault);
   if (!before) return;
   if (!scan.motion)
     throw Error("no motion leads to the scan at " + when +

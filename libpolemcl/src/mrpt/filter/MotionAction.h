@@ -27,10 +27,10 @@ constexpr double kMaxMotionStep = 10000;
 mrpt::obs::CActionCollection::Ptr makeMotionAction(const PoseWithCovariance& motion,
                                                    const FilterOptions& options);
 
-/// \brief Checks the time of a scan and the motion to it; the first scan needs no motion.
+/// \brief Checks a scan: its time, its poles, and the motion to it, which the first does not need.
 /// \param before Time of the scan before, s; nullopt for the first one.
-/// \throws Error when the time is not later than `before`, or the motion is missing; also as
-///         makeMotionAction(), with the time of the scan.
+/// \throws Error with the time of the scan when it is not later than `before`, a pole has a fault
+///         (faultOf()), or the motion is missing; also as makeMotionAction().
 void requireStep(const PoleScan& scan, std::optional<double> before);
 
 }  // namespace polemcl

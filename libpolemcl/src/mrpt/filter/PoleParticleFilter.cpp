@@ -153,9 +153,6 @@ PoseWithCovariance PoleParticleFilter::step(const PoleScan& frame, const NewShar
   requireStep(frame, m_time);
   const auto observation = CObservationPoles::Create();
   observation->poles = frame.poles_robot;  // sensorPose stays identity: robot frame
-  // For no particles at all: refuses bad detections before anything changes.
-  std::vector<std::vector<double>> none;
-  m_map->widenedLogLikelihoods(*observation, m_map->likelihoodOptions, {}, {1}, none);
   mrpt::obs::CSensoryFrame scan;
   scan.insert(observation);
   const auto action = m_time ? makeMotionAction(*frame.motion, m_options) : nullptr;

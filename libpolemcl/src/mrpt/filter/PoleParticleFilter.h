@@ -69,7 +69,8 @@ class POLEMCL_EXPORT PoleParticleFilter : public mrpt::slam::CMonteCarloLocaliza
   /// \brief Draws the particles from a mixture of Gaussians. Each hypothesis gets its share by
   /// weight (rounded, so that a share below half a particle gets none).
   /// \param particles Number until the first resampling, which reduces it to the number in the
-  ///        options. Smaller values are raised to that number.
+  ///        options. Smaller values are raised to that number, and so are all if the filter
+  ///        resamples in each step.
   /// \throws Error without hypotheses; when a weight is negative or not finite, or all weights are
   ///         0; when a pose is not finite or its covariance not symmetric positive semidefinite;
   ///         when `particles` is not 1 to 1000000. The state is then unchanged.

@@ -37,9 +37,8 @@ class LiveSensors {
 /// Each section is a sensor, except `[global]` and those with `rawlog-grabber-ignore = true`. Its
 /// key `driver` names the class: one of MRPT's, or CUdpOdometry. `process_rate` is how often in a
 /// second the driver is asked (default: 1000). The other keys are those of the class. For
-/// CVelodyneScanner, VelodyneReceiver listens and adds keys. With `pcap_input`, MRPT's class reads
-/// the file; there `data_port` and `position_port` are those of the last such sensor,
-/// `pcap_read_once` is true unless set, and the first turn is left out: it is not complete.
+/// CVelodyneScanner, VelodyneReceiver listens and adds keys. With `pcap_input`, `pcap_read_once` is
+/// true unless set.
 /// \throws Error with file and section: no sensor, no or unknown driver, a wrong value, a device
 ///         that cannot be opened; or the module is missing.
 std::unique_ptr<LiveSensors> startSensors(const std::string& file, SensorEvents events);

@@ -100,16 +100,20 @@ std::uint32_t between(const CObservationVelodyneScan::TVelodyneRawPacket& earlie
 }
 
 /// Measuring times by the packets: the time stamp is that of the first firing, and azimuths of the
-/// device are clockwise. None if the packets do not show a turn (fewer than two, no clock).
+/// device are clockwise. None if the packets do not show a turn (fewer than two, no clock, one that
+/// was set, packets that changed places).
 std::optional<ScanTiming> timingOf(
     const std::vector<CObservationVelodyneScan::TVelodyneRawPacket>& packets) {
-  constexpr int kFullTurn = 36000;  // 1/100 degree
+  constexpr int kFullTurn = 36000;       // 1/100 degree
+  constexpr double kLongestPause = 0.5;  // between two packets, s
   if (packets.size() < 2) return std::nullopt;
   const auto rotation = [&](std::size_t i) { return packets[i].blocks[0].rotation() % kFullTurn; };
   double turned = 0, seconds = 0;
   for (std::size_t i = 1; i < packets.size(); ++i) {
     turned += (rotation(i) - rotation(i - 1) + kFullTurn) % kFullTurn;
-    seconds += between(packets[i - 1], packets[i]) * 1e-6;
+    const double pause = between(packets[i - 1], packets[i]) * 1e-6;
+    if (pause > kLongestPause) return std::nullopt;
+    seconds += pause;
   }
   if (!(turned > 0 && seconds > 0)) return std::nullopt;
   return ScanTiming{Turn::clockwise, seconds * kFullTurn / turned,

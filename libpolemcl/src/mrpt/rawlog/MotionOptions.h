@@ -10,15 +10,15 @@
 
 namespace polemcl {
 
-/// \brief Noise of odometry. `[motion]` in INI files. The first five describe readings that come
+/// \brief Noise of odometry. `[motion]` in INI files. The first six describe readings that come
 /// without a covariance (`CObservationOdometry`); the last scales every covariance.
 struct POLEMCL_EXPORT MotionOptions {
   double xyPerMetre = 0.05;     ///< σ of x and y per metre driven, m/m (`xy_per_m`)
   double xyPerRadian = 0.05;    ///< σ of x and y per radian turned, m/rad (`xy_per_rad`)
   double yawPerMetre = 0.0035;  ///< σ of the heading per metre driven, rad/m (`yaw_per_m_deg`)
   double yawPerRadian = 0.05;   ///< σ of the heading per radian turned, rad/rad (`yaw_per_rad`)
-  double minXy = 0.005;         ///< added to σ of x and y for each motion, m (`min_xy_m`)
-  double minYaw = 0.00087;      ///< added to σ of the heading for each motion, rad (`min_yaw_deg`)
+  double minXy = 0.005;         ///< added to σ of x and y for each motion, m; no setting
+  double minYaw = 0.00087;      ///< added to σ of the heading for each motion, rad; no setting
   double covarianceFactor = 1;  ///< on all covariances, also those of the rawlog (paper, NCLT: 4)
 };
 

@@ -5,11 +5,24 @@
 
 namespace polemcl {
 
+namespace {
+
+/// The pose at a time if the motion from one reading to another goes on after it.
+template <class Reading>
+Pose2D goneOn(const Reading& from, const Reading& to, double time) {
+  const Pose2D step = relative(from.second, to.second);
+  const double share = (time - to.first) / (to.first - from.first);
+  return compose(to.second, {share * step.x, share * step.y, share * step.yaw});
+}
+
+}  // namespace
+
 void OdometryTrack::add(double time, const Pose2D& pose) {
   Pose2D joined = compose(m_origin, pose);
   if (isJump(time, joined)) {
     ++m_jumps;
-    joined = goneOn(time);
+    const auto last = m_readings.rbegin();
+    joined = m_readings.size() > 1 ? goneOn(*std::next(last), *last, time) : last->second;
     m_origin = compose(joined, relative(pose, {}));
   }
   m_readings[time] = joined;
@@ -25,36 +38,39 @@ bool OdometryTrack::isJump(double time, const Pose2D& pose) const {
          std::abs(step.yaw) > kLeastTurn + kFastestTurn * dt;
 }
 
-/// The pose at a time after the readings if the last motion goes on.
-Pose2D OdometryTrack::goneOn(double time) const {
-  const auto last = m_readings.rbegin(), before = std::next(last);
-  if (before == m_readings.rend()) return last->second;
-  const Pose2D step = relative(before->second, last->second);
-  const double share = (time - last->first) / (last->first - before->first);
-  return compose(last->second, {share * step.x, share * step.y, share * step.yaw});
-}
-
 std::optional<Pose2D> OdometryTrack::at(double time) const {
-  const auto after = m_readings.lower_bound(time);  // at or after
-  if (after == m_readings.end()) {
-    if (m_readings.empty() || time - m_readings.rbegin()->first > kReach) return std::nullopt;
-    return m_readings.rbegin()->second;
-  }
-  if (after->first == time) return after->second;
-  if (after == m_readings.begin()) {
-    if (after->first - time > kReach) return std::nullopt;
-    return after->second;
-  }
+  if (m_readings.empty()) return std::nullopt;
+  const auto first = m_readings.begin();
+  auto after = m_readings.lower_bound(time);  // at or after
+  const auto nearest = after == m_readings.end() ? std::prev(after) : after;
+  if (nearest->first == time) return nearest->second;
+  const bool isOutside = after == first || after == m_readings.end();
+  if (isOutside && std::abs(time - nearest->first) > kReach) return std::nullopt;
+  if (m_readings.size() == 1) return nearest->second;
+  if (after == first) return goneOn(*std::next(first), *first, time);
+  if (after == m_readings.end()) return goneOn(*std::prev(nearest), *nearest, time);
   const auto before = std::prev(after);
   const double share = (time - before->first) / (after->first - before->first);
   const Pose2D step = relative(before->second, after->second);
   return compose(before->second, {share * step.x, share * step.y, share * step.yaw});
 }
 
+bool OdometryTrack::isNear(double time) const {
+  const auto after = m_readings.lower_bound(time);
+  const bool isBefore = after != m_readings.begin(), isAfter = after != m_readings.end();
+  return (isBefore || isAfter) && (!isAfter || after->first - time <= kReach) &&
+         (!isBefore || time - std::prev(after)->first <= kReach);
+}
+
+void OdometryTrack::clear() {
+  m_readings.clear();
+  m_origin = {};
+}
+
 void OdometryTrack::forgetBefore(double time) {
   const auto after = m_readings.upper_bound(time);
-  if (after == m_readings.begin()) return;
-  m_readings.erase(m_readings.begin(), std::prev(after));
+  if (std::distance(m_readings.begin(), after) > 2)  // two tell how the motion goes on
+    m_readings.erase(m_readings.begin(), std::prev(after, 2));
 }
 
 }  // namespace polemcl

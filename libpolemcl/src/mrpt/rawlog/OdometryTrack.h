@@ -15,36 +15,41 @@ namespace polemcl {
 /// wrong. Over a jump, the motion before goes on; later readings continue from there.
 class OdometryTrack {
  public:
-  /// \brief A longer step between two readings is a jump: `nearest + fastest * dt`, m and m/s.
+  /// \brief A longer step between two readings is a jump: kNearestJump + kFastest * dt, m and m/s.
   static constexpr double kNearestJump = 1, kFastest = 70;
   /// \brief The same for the heading, rad and rad/s.
   static constexpr double kLeastTurn = 0.5, kFastestTurn = 10;
 
-  /// \brief The first and last pose are also valid for this time before and after the readings, s.
+  /// \brief For this time before and after the readings, the first and last motion go on, s.
   static constexpr double kReach = 0.5;
 
   void add(double time, const Pose2D& pose);
   /// \brief Number of jumps so far.
   std::size_t jumps() const { return m_jumps; }
   bool empty() const { return m_readings.empty(); }
-  /// \brief Whether there is a reading at `time` or later.
+  /// \brief Whether there is a reading at `time` or later. A single one, which tells no motion,
+  /// must be of that time.
   bool reaches(double time) const {
-    return !m_readings.empty() && m_readings.rbegin()->first >= time;
+    return !m_readings.empty() && m_readings.rbegin()->first >= time &&
+           (m_readings.size() > 1 || m_readings.begin()->first == time);
   }
   /// \brief Whether all times from `begin` to `end` lie between readings.
   bool covers(double begin, double end) const {
     return reaches(end) && m_readings.begin()->first <= begin;
   }
-  /// \brief Pose interpolated between the readings around `time`; nullopt beyond `reach`.
+  /// \brief Pose interpolated between the readings around `time`; nullopt beyond kReach.
   std::optional<Pose2D> at(double time) const;
+  /// \brief Whether the readings before and after `time` are within kReach of it.
+  bool isNear(double time) const;
   /// \brief A pose of at() as the readings since the last jump state it.
   Pose2D asRead(const Pose2D& pose) const { return relative(m_origin, pose); }
   /// \brief Drops readings that are not needed for poses at `time` or later.
   void forgetBefore(double time);
+  /// \brief Drops all readings; the jumps stay counted.
+  void clear();
 
  private:
   bool isJump(double time, const Pose2D& pose) const;
-  Pose2D goneOn(double time) const;
 
   std::map<double, Pose2D> m_readings;  ///< s; without jumps
   Pose2D m_origin;                      ///< of the readings since the last jump

@@ -4,9 +4,11 @@
 #include <mrpt/obs/CObservationRotatingScan.h>
 
 #include <cmath>
+#include <optional>
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+#include "core/common/Angles.h"
 #include "mrpt/observation/LidarFrame.h"
 #include "mrpt/observation/ObservationPoints.h"
 #include "mrpt/rawlog/ScanSource.h"
@@ -42,8 +44,8 @@ void requireBeams(const mrpt::obs::CObservation& scan) {
     throw Error("is from a depth camera, which has an image and no beams: it needs no inspection");
   if (dynamic_cast<const mrpt::obs::CObservationRotatingScan*>(&scan))
     throw Error(
-        "holds rotating scans, which do not state the elevations of their rings; name the model in "
-        "[sensor], or give elevations_deg in the order of the rings");
+        "holds rotating scans, which do not state the elevations of their rings, so they cannot be "
+        "inspected; write [sensor] by hand: model, or elevations_deg in the order of the rings");
 }
 
 std::vector<PointOrder> ordersOf(const std::vector<PointsView>& scans) {
@@ -54,6 +56,21 @@ std::vector<PointOrder> ordersOf(const std::vector<PointsView>& scans) {
     orders.push_back(*order);
   }
   return orders;
+}
+
+/// What all scans say alike of their measuring times, as packets do.
+ScanTiming commonTiming(const std::vector<ScanSource::Scan>& scans) {
+  constexpr double kSameCut = 5 * degree;
+  ObservationPoints points{SensorOptions()};
+  std::optional<ScanTiming> common;
+  for (const auto& scan : scans) {
+    points.read(*scan.parts.front().observation);
+    const ObservationPoints::Loan loan(points);
+    const auto& own = points.timing();
+    if (!own || (common && std::abs(wrapAngle(own->cut - common->cut)) > kSameCut)) return {};
+    if (!common) common = own;
+  }
+  return common.value_or(ScanTiming());
 }
 
 /// The options of a sensor identified in its own axes, for clouds with this sensor pose.
@@ -102,6 +119,7 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
                  (first.sensorLabel.empty() ? "" : " " + first.sensorLabel);
   first.getSensorPose(result.sensorPose);
   if (!source.timing().movingCut) result.stated = source.timing();
+  if (!result.stated.known()) result.stated = commonTiming(scans);
   try {
     result.sensor = identifySensor(views);
   } catch (const Error& error) {

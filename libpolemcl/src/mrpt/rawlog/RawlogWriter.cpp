@@ -59,9 +59,10 @@ void RawlogWriter::writeObject(const mrpt::serialization::CSerializable& object)
   if (!m_file.stream()) m_file.commit();  // throws now instead of writing for hours to a full disk
 }
 
-void RawlogWriter::writeComment(const std::string& text) {
+void RawlogWriter::writeComment(const std::string& text, double time) {
   mrpt::obs::CObservationComment comment;
   comment.text = text;
+  comment.timestamp = mrpt::Clock::fromDouble(time);
   writeObject(comment);
 }
 

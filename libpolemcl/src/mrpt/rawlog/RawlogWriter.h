@@ -19,7 +19,8 @@ class RawlogWriter {
   explicit RawlogWriter(const std::string& path);
 
   /// \brief Writes the comment of the rawlog, as MRPT's own; to be called first.
-  void writeComment(const std::string& text);
+  /// \param time Of the first scan, s: MRPT's tools cut rawlogs by the times of all objects.
+  void writeComment(const std::string& text, double time);
   /// \brief Writes an action and a sensory frame with the observation.
   /// \throws Error when an action's movement would be lost: CActionRobotMovement2D with
   ///         `emOdometry` stores the odometry reading, not `poseChange`.

@@ -146,10 +146,19 @@ std::optional<std::size_t> ScanSource::lidarOf(const CObservation& observation) 
   return sensorOf(observation) == m_sensor ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
+void ScanSource::passOver(const CObservation& observation) {
+  ++m_otherSensors;
+  m_otherLabels.insert(sensorOf(observation));
+}
+
 void ScanSource::take(const CObservation::Ptr& observation, const RawlogEntry& entry) {
   const double time = mrpt::Clock::toDouble(observation->timestamp);
   if (const auto odometry = std::dynamic_pointer_cast<CObservationOdometry>(observation)) {
-    m_odometry.add(time, planar(odometry->odometry));
+    if (m_odometry.empty()) m_odometryLabel = odometry->sensorLabel;
+    if (odometry->sensorLabel == m_odometryLabel)
+      m_odometry.add(time, planar(odometry->odometry));
+    else
+      passOver(*odometry);
     return;
   }
   if (!isScan(*observation)) {
@@ -159,8 +168,7 @@ void ScanSource::take(const CObservation::Ptr& observation, const RawlogEntry& e
   }
   const auto lidar = lidarOf(*observation);
   if (!lidar) {
-    ++m_otherSensors;
-    m_otherLabels.insert(sensorOf(*observation));
+    passOver(*observation);
     return;
   }
   if (observation->timestamp == INVALID_TIMESTAMP)

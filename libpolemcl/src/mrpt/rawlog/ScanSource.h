@@ -79,6 +79,7 @@ class ScanSource {
   void take(const RawlogEntry& entry);
   void take(const mrpt::obs::CObservation::Ptr& observation, const RawlogEntry& entry);
   std::optional<std::size_t> lidarOf(const mrpt::obs::CObservation& observation);
+  void passOver(const mrpt::obs::CObservation& observation);
   void add(LidarScan scan);
   void takeGroups();
   void requireLidars() const;
@@ -93,6 +94,7 @@ class ScanSource {
   std::shared_ptr<EntrySource> m_entries;
   std::optional<PoseWithCovariance> m_moved;  ///< motion by actions since the last scan
   OdometryTrack m_odometry;
+  std::string m_odometryLabel;  ///< of the sensor whose readings are used
   ScanTiming m_timing;
   std::deque<Scan> m_waiting;  ///< scans waiting for later odometry
   std::string m_sensor;        ///< class and label of the scans in use; empty before the first

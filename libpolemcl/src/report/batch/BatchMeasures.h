@@ -18,8 +18,8 @@ ErrorMetrics errorMetrics(const TrajectoryErrors& errors, const std::vector<Stam
 /// \brief Adds a run's errors to the histograms of its session.
 void addErrors(SessionPlots& plots, const TrajectoryErrors& errors);
 
-/// \brief The fewest of the points that leave none farther than `tolerance` from the line through
-/// those that remain (Douglas and Peucker 1973), rounded to centimetres. First and last remain.
+/// \brief Some of the points, such that none lies farther than `tolerance` from the line through
+/// those (Douglas and Peucker 1973), rounded to centimetres. First and last remain.
 /// \param tolerance m; 0 chooses 1/1500 of the larger side of their box.
 std::vector<Eigen::Vector2d> thinPath(const std::vector<Eigen::Vector2d>& points,
                                       double tolerance = 0);

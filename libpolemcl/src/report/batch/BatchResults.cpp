@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <polemcl/core/common/Types.h>
 
@@ -26,14 +25,6 @@ void ErrorHistogram::add(double value) {
   std::size_t bin = 0;
   while (bin + 1 < bins && value >= edge(bin + 1)) ++bin;
   ++counts[bin];
-}
-
-void ErrorHistogram::add(const ErrorHistogram& other) {
-  for (std::size_t i = 0; i < bins; ++i) counts[i] += other.counts[i];
-}
-
-std::uint64_t ErrorHistogram::total() const {
-  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
 const SessionResult* BatchResults::find(std::size_t configuration, std::size_t session) const {

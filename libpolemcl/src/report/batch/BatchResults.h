@@ -89,9 +89,6 @@ struct ErrorHistogram {
   static double edge(std::size_t bin);
   /// \param value Not negative, finite. \throws Error otherwise.
   void add(double value);
-  /// \brief Adds the counts of another.
-  void add(const ErrorHistogram& other);
-  std::uint64_t total() const;
 };
 
 /// \brief What is drawn of a session under a configuration. Any part may be empty.

@@ -15,8 +15,7 @@ namespace polemcl::report {
 /// Written atomically. Same input, same bytes on one machine.
 /// \param width,height px; at least 1200 × 750.
 /// \throws Error when both maps are empty, a coordinate is not finite, the size is too small, or
-/// the
-///         file cannot be written.
+///         the file cannot be written.
 void drawDiffPng(const MapDiff& diff, const std::string& title, const std::filesystem::path& file,
                  int width = 1600, int height = 1000);
 

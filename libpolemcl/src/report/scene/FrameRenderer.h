@@ -13,8 +13,7 @@ namespace polemcl::report {
 /// destroyed in one thread: OpenGL's contexts belong to threads.
 class FrameRenderer {
  public:
-  /// \brief How many times larger letters and points of scenes for it must be: as large a part of
-  /// any picture as of one of 720 rows.
+  /// \brief Factor for letters and points: they fill the same share of the picture at any height.
   static constexpr double textScale(unsigned height) { return 2 * height / 720.0; }
   /// \param width,height Size of the pictures, pixels.
   /// \throws Error when OpenGL cannot be had off-screen.

@@ -11,7 +11,7 @@
 
 namespace polemcl::report {
 
-/// \brief The moments of a run. All of the newest; of those before it all but points, with few
+/// \brief The moments of a run: the newest whole, older ones without points and with few
 /// particles.
 ///
 /// A scan takes some 0.5 kB, 24 bytes a pole and 12 bytes a particle: 2 kB with 20 poles. Of a long

@@ -20,7 +20,7 @@ namespace polemcl::report {
 /// - `matched`, `unmatched`: observed poles that stand on the map, or not, with lines of sight;
 /// - `hypotheses`: arrows where the last search supposes the vehicle, while the pose is in doubt.
 ///
-/// What there is nothing of is left out. The camera follows from behind; without a pose it shows
+/// Empty objects are left out. The camera follows from behind; without a pose it shows
 /// the whole map, with `dots` for the poles. Viewers of `.3Dscene` files take this camera. Viewport
 /// `text`: health, matched share, spread, particles, legend. Viewport `close`, with a pose:
 /// particles and ellipse from above, relative to the estimate, magnified as their spread asks for.

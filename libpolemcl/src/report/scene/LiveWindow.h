@@ -20,9 +20,9 @@ class LiveWindow {
   virtual ~LiveWindow() = default;
   /// \brief False once the user has closed it.
   virtual bool isOpen() const = 0;
-  /// \brief Changes the scene that the window shows. The camera goes along as that of the scene
-  /// moves, from wherever the user has turned it to; where the scene shows the whole map, the user
-  /// has a view of its own.
+  /// \brief Changes the scene that the window shows. The window's camera follows the scene's
+  /// camera, and keeps the turn and the zoom that the user chose. The view of the whole map has its
+  /// own.
   /// \param change Called with the window's drawing stopped.
   /// \param camera That of the scene, read after the change.
   virtual void update(const std::function<void()>& change, const viz::CCamera& camera) = 0;

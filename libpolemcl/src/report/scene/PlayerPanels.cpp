@@ -78,7 +78,8 @@ void drawErrors(PanelPen& pen, const TimeLine& line) {
   for (std::size_t i = 0; i < line.columns.size(); ++i) {
     const auto& error = line.columns[i].error;
     if (!error) continue;
-    const double from = PanelPen::x(static_cast<double>(i) / all), to = from + PanelPen::x(1) / all;
+    const double from = PanelPen::x(static_cast<double>(i) / all),
+                 to = PanelPen::x(static_cast<double>(i + 1) / all);
     const double top = height(*error);
     const bool joined = i > 0 && line.columns[i - 1].error;
     pen.rectangle(from, to, s_curveBottom, top, s_area);

@@ -37,10 +37,8 @@ class Fit {
     m_model.detectedRange.assign(kDetectedRange.begin(), kDetectedRange.end());
     m_model.reportedRange.assign(kReportedRange.begin(), kReportedRange.end());
     while (m_model.detectedRange.back() > maxRange) m_model.detectedRange.pop_back();
-    for (const ObservedStreet& street : streets) {
-      m_streets.push_back(trackStreet(street, maxRange));
-      m_spacing.push_back(street.first.drive->options().spacing);
-    }
+    m_spacing = streets.front().first.drive->options().spacing;
+    for (const ObservedStreet& street : streets) m_streets.push_back(trackStreet(street, maxRange));
   }
 
   DetectionModel run(const std::vector<ObservedStreet>& streets) {
@@ -259,8 +257,7 @@ class Fit {
           add(pairs, track, a, b);
         });
         if (pairs.count() >= kFewPairs)
-          counted.push_back(
-              {static_cast<double>(lag) * m_spacing.front(), sameDay, pairs.correlation()});
+          counted.push_back({static_cast<double>(lag) * m_spacing, sameDay, pairs.correlation()});
       }
     return fitSpectrum(counted);
   }
@@ -329,7 +326,7 @@ class Fit {
 
   DetectionModel m_model;
   std::vector<TrackedStreet> m_streets;
-  std::vector<double> m_spacing;
+  double m_spacing;  ///< of the scans, m; the same on all streets
 };
 
 void requireTwoDays(const ObservedStreet& street) {
@@ -342,9 +339,15 @@ void requireTwoDays(const ObservedStreet& street) {
   if (a.world.day == b.world.day)
     throw Error(
         "the two drives of a pair are on one day; each pair must be one street on two days");
-  if (a.spacing != b.spacing) throw Error("the two drives of a pair differ in spacing_m");
-  if (street.first.drive->lidar().name != street.second.drive->lidar().name)
-    throw Error("the two drives of a pair differ in [sensor] model");
+}
+
+void requireSameSensing(const SimulatedDrive& drive, const SimulatedDrive& first) {
+  const auto differ = [](const std::string& what) {
+    throw Error("the drives differ in " + what + "; a model is of one");
+  };
+  if (drive.options().spacing != first.options().spacing) differ("spacing_m");
+  if (drive.options().height != first.options().height) differ("[sensor] height_m");
+  if (drive.lidar().name != first.lidar().name) differ("[sensor] model");
 }
 
 }  // namespace
@@ -352,11 +355,15 @@ void requireTwoDays(const ObservedStreet& street) {
 DetectionModel fitDetectionModel(const std::vector<ObservedStreet>& streets, double maxRange,
                                  const std::string& fittedOn) {
   if (streets.empty()) throw Error("no street to fit a model to");
+  if (maxRange < kDetectedRange.front())
+    throw Error("max_range_m is below the nearest range of a model, 2 m");
   std::vector<double> points;
   for (const ObservedStreet& street : streets) {
     requireTwoDays(street);
-    for (const ObservedDrive* drive : {&street.first, &street.second})
+    for (const ObservedDrive* drive : {&street.first, &street.second}) {
+      requireSameSensing(*drive->drive, *streets.front().first.drive);
       points.insert(points.end(), drive->points.begin(), drive->points.end());
+    }
   }
   DetectionModel model = Fit(streets, maxRange).run(streets);
   const SimulationOptions& options = streets.front().first.drive->options();

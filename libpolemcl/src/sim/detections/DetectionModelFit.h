@@ -27,8 +27,8 @@ struct ObservedStreet {
 /// m of a true pole belong to this pole. Other detections are clutter if three or more fall on one
 /// place.
 /// \param maxRange Range of the extraction, m. \param fittedOn Description for humans.
-/// \throws Error without a street, when the days of a street differ in more than day and drive, or
-///         when hardly any pole is found.
+/// \throws Error without a street, when the days of a street differ in more than day and drive,
+///         when drives differ in LiDAR, its height or spacing, or when hardly any pole is found.
 DetectionModel fitDetectionModel(const std::vector<ObservedStreet>& streets, double maxRange,
                                  const std::string& fittedOn);
 

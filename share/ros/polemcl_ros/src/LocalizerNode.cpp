@@ -30,6 +30,8 @@ std::string textOf(const rclcpp::Parameter& parameter) {
     text << parameter.as_double();
   else if (parameter.get_type() == rclcpp::ParameterType::PARAMETER_DOUBLE_ARRAY)
     for (const double value : parameter.as_double_array()) text << value << ' ';
+  else if (parameter.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER_ARRAY)
+    for (const std::int64_t value : parameter.as_integer_array()) text << value << ' ';
   else
     text << parameter.value_to_string();
   return text.str();

@@ -92,7 +92,7 @@ struct POLEMCL_EXPORT ScanLineOptions {
   double minRadius = 0.02;   ///< m
   double maxRadius = 0.45;   ///< m
   int minPoints = 5;         ///< least number of returns of a pole
-  double maxTilt = 0.2;      ///< greatest tilt of the axis from the vertical, rad (`max_tilt_deg`)
+  double maxTilt = 0.2;      ///< greatest tilt of the axis from the vertical, rad; no setting
   double maxScatter = 0.12;  ///< greatest rms distance of the segments from the axis, m
   double minSpacing = 0.4;   ///< two poles nearer than this: the less confident is dropped, m
   double minConfidence = 0.65;  ///< poles with a lower confidence are refused

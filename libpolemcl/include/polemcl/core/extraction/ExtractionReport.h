@@ -18,7 +18,7 @@ enum class RejectionReason {
   tooShort,       ///< its visible height is below `min_height_m`
   badFit,         ///< no circle, or a radius out of range
   notFree,        ///< its surroundings are not free
-  tilted,         ///< its axis leans more than `max_tilt_deg`
+  tilted,         ///< its axis leans too much
   notStraight,    ///< its segments do not stand above one another
   lowConfidence,
   duplicate,  ///< beside a more confident one

@@ -36,8 +36,10 @@ class POLEMCL_EXPORT PoleExtractor {
   ///        (within the mounting tilt; see SensorOptions). The order of points does not matter.
   /// \param upright Shift of an upright pole along x and y per unit of height along z: the known
   /// lean of the lidar. Used by the scan-line method.
-  /// \return Poles in that same frame; heights above the local ground. Centres of the scan-line
-  /// method are those at the height of the lidar, or the nearest that was seen.
+  /// \return Poles in that same frame. Heights are above the local ground. Centres of the scan-line
+  /// method are those at the height of the lidar, or the nearest that was seen. Times are 0: to
+  /// correct a pole for the motion during a turn, set its `timeOffset` to ScanTiming::offset() of
+  /// its azimuth, and its `turnRate`.
   const std::vector<PoleDetection>& extract(
       const PointsView& points, const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
   const ExtractionReport& report() const;

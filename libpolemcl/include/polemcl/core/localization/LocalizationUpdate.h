@@ -13,7 +13,7 @@ namespace polemcl {
 
 enum class HealthState { ok, degraded, lost };
 
-/// \brief Why the state is not `ok`; the first that applies in this order.
+/// \brief Why the state is not `ok`: the first that applies in the table of share/doc/health.md.
 enum class HealthReason {
   none,        ///< ok
   searching,   ///< lost: no pose is known yet
@@ -22,9 +22,9 @@ enum class HealthReason {
   spread,      ///< lost or degraded: the pose is too uncertain
   ambiguous,   ///< degraded: several places are about as likely
   converging,  ///< degraded: not yet confirmed since the start or since the last search
-  timeGap,   ///< degraded: no scan for longer than `max_gap_s`, until poles confirm the pose again
-  noPoles,   ///< degraded: no pole was seen for 2 s or 20 m
-  odometry,  ///< degraded: the poles contradict the odometry
+  timeGap,     ///< degraded: no scan for longer than `max_gap_s`, until 5 m of good matches
+  noPoles,     ///< degraded: no pole was seen for 2 s or 20 m
+  odometry,    ///< degraded: the poles contradict the odometry
   innovation,  ///< degraded: matched poles lie farther off than their covariances say, or others
                ///< fit another pose nearby together
 };

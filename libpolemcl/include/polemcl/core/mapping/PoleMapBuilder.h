@@ -52,8 +52,8 @@ struct POLEMCL_EXPORT PoleMapOptions {
   /// Poles nearer to each other than mergeDistance stay apart when at least this share of the
   /// keyframes of the one seen more often shows both; otherwise they are one.
   static constexpr double apartShare = 0.25;
-  /// Least `counting` of a pole. With `confidences`, of a drive whose scans are so far apart that
-  /// only a share of the sections has one, this share of it, but 1.5 at least.
+  /// Least `counting` of a pole. With `confidences` it is multiplied by the share of sections that
+  /// have a scan, but not to below 1.5.
   double minCount = 3;
   int maxGap = 2;  ///< most *occupied* sections in a row that may miss it inside a run; no setting
   double minConfidence = 0;  ///< detections below are not used, in [0, 1]; those of 0 never are

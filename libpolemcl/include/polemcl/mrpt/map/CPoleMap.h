@@ -81,8 +81,8 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
 
   /// \name Likelihood of many poses at once
   /// One definition, that of the core (core/localization/PoleLikelihood.h) with
-  /// `likelihoodOptions`. MRPT calls computeObservationLikelihood() for one pose; the particle
-  /// filter of this library calls these functions for all its particles. The same planar pose gets
+  /// `likelihoodOptions`. MRPT calls computeObservationLikelihood() for one pose; these functions
+  /// are for all particles at once. The same planar pose gets
   /// the same number, bit for bit.
   /// @{
   /// \brief log p(observation | pose) up to a constant, finite. All 0 for observations other than

@@ -16,9 +16,8 @@ struct HeightRange {
 };
 
 /// \brief Tests a segment in the order of Algorithm 1.
-/// \param heightOffset Added to z of the points before heights are compared (height of the sensor
-/// where
-///        heights are above ground, else 0).
+/// \param heightOffset Added to z of the points before heights are compared: height of the sensor
+///        where heights are above ground, else 0.
 /// \param[out] heights Filled once the shape tests have passed.
 /// \return The first reason to refuse it, if any.
 std::optional<RejectionReason> testCandidate(const RangeImage& image,

@@ -97,8 +97,8 @@ void GroundGrid::climb(float sensorHeight) {
   }
 }
 
-/// A stray cell may be left, and where cells begin is arbitrary: the median with the neighbours to
-/// both sides takes out the one, their weighted mean evens out the other.
+/// The median with both neighbours removes single wrong cells. The weighted mean then smooths the
+/// borders between cells.
 void GroundGrid::smooth() {
   float medians[kCells];
   const auto sides = [](const float* of, int c) {

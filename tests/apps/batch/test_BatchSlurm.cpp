@@ -1,0 +1,67 @@
+// With a stand-in for Slurm. A real cluster: tests/slurm/run.sh.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "batch/BatchSlurm.h"
+#include "support/BatchTestFiles.h"
+#include "support/ExpectHas.h"
+
+namespace polemcl::test_batch_slurm {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+/// One task is given to an `sbatch` that takes it, and to a `squeue` that fails `failures` times
+/// before it says that nothing is queued.
+class BatchSlurm : public testing::Test {
+ protected:
+  BatchSlurm() : m_path(std::getenv("PATH")) {
+    ::setenv("PATH", (m_folder.path().string() + ":" + m_path).c_str(), 1);
+    command("sbatch", "echo 7");
+    m_options.pollSeconds = 0.01;
+  }
+  ~BatchSlurm() override { ::setenv("PATH", m_path.c_str(), 1); }
+
+  void runWith(int failures) {
+    command("squeue", "echo >>" + (m_folder / "asked").string() + "\n[ $(wc -l <" +
+                          (m_folder / "asked").string() + ") -gt " + std::to_string(failures) +
+                          " ] || { echo Unable to contact slurm controller; exit 1; }");
+    BatchPlan plan;
+    plan.name = "try";
+    plan.tasks = {BatchTask({TaskKind::poles, {"a"}})};
+    runOnSlurm(BatchFolder(m_folder / "out"), plan, {&plan.tasks[0]}, m_options, {});
+  }
+  std::size_t asked() {
+    const std::string lines = readText(m_folder / "asked");
+    return static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n'));
+  }
+
+  SlurmOptions m_options;
+
+ private:
+  void command(const std::string& name, const std::string& text) {
+    writeText(m_folder / name, "#!/bin/sh\n" + text + "\n");
+    fs::permissions(m_folder / name, fs::perms::owner_all);
+  }
+  std::string m_path;
+  TempFolder m_folder;
+};
+
+}  // namespace
+
+TEST_F(BatchSlurm, WaitsWhileTheControllerDoesNotAnswer) {
+  runWith(3);
+  EXPECT_EQ(asked(), 4u);
+}
+
+TEST_F(BatchSlurm, SaysWhichJobsMayRunWhenItGivesUp) {
+  m_options.patienceSeconds = 0.05;
+  EXPECT_REFUSED(runWith(1000), "squeue failed: Unable to contact slurm controller",
+                 "before --resume: scancel 7");
+}
+
+}  // namespace polemcl::test_batch_slurm
