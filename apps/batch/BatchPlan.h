@@ -83,10 +83,10 @@ struct BatchPlan {
 /// \brief Plans a batch. Sessions are imported once and extracted once for all configurations that
 /// use them and have the same `[sensor] [extraction] [range_image] [scan_line] [vehicle] [motion]`;
 /// maps are built once for all sessions and runs. Maps that a configuration's last map session
-/// completes (with `maps = each`: all) are scored where that session has a truthMap. \throws Error
-/// as settingsFor() and requirePublished(), and when the input or the true poles of a session are
-/// not there (their number and the first three are named). \param build Build of the programs that
-/// do the tasks. Tasks done by another build are open.
+/// completes (with `maps = each`: all) are scored where that session has a truthMap.
+/// \param build Build of the programs that do the tasks. Tasks done by another build are open.
+/// \throws Error as settingsFor() and requirePublished(), and when the input or the true poles of a
+///         session are not there (their number and the first three are named).
 BatchPlan planBatch(const BatchSpec& spec, const std::string& build = buildIdentity());
 
 /// \brief Tasks that can be done at the same time, the first need nothing: ids by level.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <polemcl/core/extraction/PoleExtractor.h>
 #include <polemcl/io/data/Cloud.h>
 #include <polemcl/localizer/Localizer.h>
 #include <polemcl/localizer/MapBuilder.h>
@@ -112,6 +113,9 @@ TEST(SettingsTest, AreReadReplacedAndWritten) {
   Settings settings("hdl32e.ini", {"filter.particles=123"});
   EXPECT_HAS(settings.text(), "particles = 123 ");
   EXPECT_HAS(settings.text(), "model = hdl32e ");
+  EXPECT_EQ(settings.sensor().model, "hdl32e");
+  EXPECT_EQ(settings.extraction().method, ExtractionMethod::scanLine);
+  EXPECT_NO_THROW(PoleExtractor(settings.sensor(), settings.extraction()));
   const std::string before = settings.text();
   EXPECT_HAS(messageOf([&] { settings.set("filter.particle=1"); }), "is particles meant?");
   EXPECT_EQ(settings.text(), before);
@@ -291,6 +295,7 @@ TEST_F(OdometryTest, ScansInAGapOfTheReadingsAreRefused) {
   }
   EXPECT_TRUE(own.hasOdometry(timeOf(0)));
   EXPECT_HAS(messageOf([&] { step(own, 0); }), "no odometry within 0.5 s of the scan");
+  EXPECT_NO_THROW(step(own, 2)) << "the time of a reading";
 }
 
 TEST_F(OdometryTest, AClockThatWasSetIsFollowedAfterASecond) {

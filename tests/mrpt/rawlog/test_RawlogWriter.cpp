@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
+#include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CRawlog.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
+#include <mrpt/serialization/CArchive.h>
 #include <sys/resource.h>
 
 #include <csignal>
@@ -46,6 +49,11 @@ TEST(RawlogWriter, TheCommentIsThatOfMrpt) {
   ASSERT_TRUE(log.loadFromRawLogFile(folder / "s.rawlog"));
   EXPECT_EQ(log.getCommentText(), "said");
   EXPECT_EQ(log.size(), 1u);
+  mrpt::io::CFileGZInputStream file(folder / "s.rawlog");
+  const auto comment = std::dynamic_pointer_cast<mrpt::obs::CObservationComment>(
+      mrpt::serialization::archiveFrom(file).ReadObject());
+  ASSERT_TRUE(comment);
+  EXPECT_NEAR(mrpt::Clock::toDouble(comment->timestamp), 12.5, 1e-6);
 }
 
 TEST(RawlogWriter, PairsAndObservationsSurvive) {

@@ -4,7 +4,6 @@
 #include <iterator>
 
 namespace polemcl {
-
 namespace {
 
 /// The pose at a time if the motion from one reading to another goes on after it.
@@ -41,7 +40,7 @@ bool OdometryTrack::isJump(double time, const Pose2D& pose) const {
 std::optional<Pose2D> OdometryTrack::at(double time) const {
   if (m_readings.empty()) return std::nullopt;
   const auto first = m_readings.begin();
-  auto after = m_readings.lower_bound(time);  // at or after
+  const auto after = m_readings.lower_bound(time);  // at or after
   const auto nearest = after == m_readings.end() ? std::prev(after) : after;
   if (nearest->first == time) return nearest->second;
   const bool isOutside = after == first || after == m_readings.end();
@@ -58,6 +57,7 @@ std::optional<Pose2D> OdometryTrack::at(double time) const {
 bool OdometryTrack::isNear(double time) const {
   const auto after = m_readings.lower_bound(time);
   const bool isBefore = after != m_readings.begin(), isAfter = after != m_readings.end();
+  if (isAfter && after->first == time) return true;
   return (isBefore || isAfter) && (!isAfter || after->first - time <= kReach) &&
          (!isBefore || time - std::prev(after)->first <= kReach);
 }

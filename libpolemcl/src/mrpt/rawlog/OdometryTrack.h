@@ -39,7 +39,7 @@ class OdometryTrack {
   }
   /// \brief Pose interpolated between the readings around `time`; nullopt beyond kReach.
   std::optional<Pose2D> at(double time) const;
-  /// \brief Whether the readings before and after `time` are within kReach of it.
+  /// \brief Whether a reading is of `time`, or those before and after are within kReach of it.
   bool isNear(double time) const;
   /// \brief A pose of at() as the readings since the last jump state it.
   Pose2D asRead(const Pose2D& pose) const { return relative(m_origin, pose); }
