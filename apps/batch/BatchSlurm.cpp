@@ -83,11 +83,19 @@ std::vector<std::vector<std::vector<std::string>>> arraysOf(
   return result;
 }
 
-/// \param jobs Their numbers, with commas between.
-bool isQueued(const std::string& jobs) {
+/// What to do with jobs that were submitted before an error.
+std::string mayRun(const std::vector<std::string>& jobs) {
+  std::string list;
+  for (const auto& job : jobs) list += " " + job;
+  return list.empty() ? "" : " Jobs may still run; before --resume: scancel" + list;
+}
+
+bool isQueued(const std::vector<std::string>& jobs) {
+  std::string list;
+  for (const auto& job : jobs) list += (list.empty() ? "" : ",") + job;
   // Jobs that ended long ago are forgotten, which squeue calls an error if all of them are.
   try {
-    return !io::trimmed(outputOf("squeue --noheader --jobs=" + jobs + " --format=%i")).empty();
+    return !io::trimmed(outputOf("squeue --noheader --jobs=" + list + " --format=%i")).empty();
   } catch (const Error& error) {
     if (std::string(error.what()).find("Invalid job id") != std::string::npos) return false;
     throw;
@@ -100,33 +108,34 @@ void runOnSlurm(const BatchFolder& folder, const BatchPlan& plan,
                 const std::vector<const BatchTask*>& open, const SlurmOptions& options,
                 const std::function<void(std::size_t)>& progress) {
   fs::create_directories(folder.path() / "slurm");
-  std::string jobs;
-  std::vector<std::string> before;
+  std::vector<std::string> jobs, before;
   std::size_t number = 0;
   for (const auto& level : arraysOf(plan, open, options.largestArray)) {
     std::vector<std::string> submitted;
     for (const auto& tasks : level) {
       const std::string name = plan.name + "." + std::to_string(++number);
-      submitted.push_back(submit(folder, name, tasks, options, before));
+      try {
+        submitted.push_back(submit(folder, name, tasks, options, before));
+      } catch (const Error& error) {
+        throw Error(error.what() + mayRun(jobs));
+      }
+      jobs.push_back(submitted.back());
     }
-    for (const auto& job : submitted) jobs += (jobs.empty() ? "" : ",") + job;
     before = submitted;
   }
   const auto done = [&] {
     return static_cast<std::size_t>(std::count_if(
         open.begin(), open.end(), [&](const BatchTask* task) { return folder.isDone(*task); }));
   };
-  // A busy controller does not answer for a while.
-  double silentSeconds = 0;
+  using Clock = std::chrono::steady_clock;
+  const std::chrono::duration<double> patience(options.patienceSeconds);
+  auto answered = Clock::now();  // a busy controller does not answer for a while
   while (!jobs.empty()) {
     try {
       if (!isQueued(jobs)) return;
-      silentSeconds = 0;
+      answered = Clock::now();
     } catch (const Error& error) {
-      silentSeconds += options.pollSeconds;
-      if (silentSeconds > options.patienceSeconds)
-        throw Error(std::string(error.what()) + " Jobs may still run; before --resume: scancel " +
-                    jobs);
+      if (Clock::now() - answered > patience) throw Error(error.what() + mayRun(jobs));
     }
     if (progress) progress(done());
     std::this_thread::sleep_for(std::chrono::duration<double>(options.pollSeconds));

@@ -29,14 +29,16 @@ void print(std::ostream& out, const LidarCounts& lidar) {
 
 void printSensors(std::ostream& out, const SequenceCounts& counts) {
   for (const LidarCounts& lidar : counts.lidars) print(out, lidar);
+  for (const std::string& label : counts.otherOdometry)
+    out << "odometry of a second sensor, not used: " << label << '\n';
   if (counts.otherSensors == 0) return;
-  out << "observations of other sensors, not used: " << counts.otherSensors << " (";
+  out << "scans of other sensors, not used: " << counts.otherSensors << " (";
   bool first = true;
   for (const std::string& label : counts.otherLabels) {
     out << (first ? "" : ", ") << label;
     first = false;
   }
-  out << "); [vehicle] lidars lists the LiDARs to use\n";
+  out << "); [vehicle] lidars lists the sensor labels to use\n";
 }
 
 Json lidarsJson(const SequenceCounts& counts) {

@@ -36,10 +36,12 @@ struct Localizer::Impl {
 
   void start(const StartOptions& options) {
     pipeline.start(options);
+    odometry.restart();
     isStarted = true;
   }
   void startAnywhere(const std::optional<SearchArea>& area = {}) {
     pipeline.initializeGlobally(area);
+    odometry.restart();
     isStarted = true;
   }
   LocalizationUpdate step(const PoleScan& frame);
@@ -84,7 +86,8 @@ LocalizationUpdate Localizer::Impl::follow(PoleScan frame, double time, const Po
 LocalizationUpdate Localizer::Impl::stepByOdometry(PoleScan frame, double time) {
   const auto pose = odometry.track().at(time);
   if (!pose || !odometry.track().isNear(time))
-    throw Error("no odometry within 0.5 s of the scan at " + io::fixed(time, 3) + " s");
+    throw Error("no odometry within 0.5 s of the scan at " + io::fixed(time, 3) +
+                " s, or readings more than 2 s apart round it");
   if (!odometry.motionTo(time, *pose)) frame.velocity = odometry.velocity();
   return follow(std::move(frame), time, *pose);
 }

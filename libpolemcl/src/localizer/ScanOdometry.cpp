@@ -49,8 +49,14 @@ void ScanOdometry::beginAnew() {
   m_reading.reset();
 }
 
+void ScanOdometry::restart() {
+  m_before.reset();
+  m_timeBefore = -INFINITY;
+}
+
 Pose2D ScanOdometry::addAtScan(double time, const Pose2D& pose) {
   requireFinite(time, pose);
+  if (!m_before) m_track.clear();
   m_track.add(time, pose);
   return *m_track.at(time);
 }

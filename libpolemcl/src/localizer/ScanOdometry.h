@@ -2,6 +2,7 @@
 /// \file ScanOdometry.h
 /// \brief Motions between scans, from odometry that is read at other times.
 
+#include <cmath>
 #include <optional>
 
 #include <polemcl/localizer/Localizer.h>
@@ -19,6 +20,8 @@ class ScanOdometry {
   /// \brief A reading not later than the last one is left out; after a second of such readings the
   /// odometry begins anew. \throws Error unless time and pose are finite.
   void add(const OdometryReading& reading);
+  /// \brief A drive begins: no motion leads to its first scan, and its times may begin anew.
+  void restart();
   /// \brief The odometry at a scan. \throws Error unless finite.
   Pose2D addAtScan(double time, const Pose2D& pose);
   const OdometryTrack& track() const { return m_track; }
@@ -40,7 +43,7 @@ class ScanOdometry {
   std::optional<OdometryReading> m_reading;  ///< the last one; its pose is that of the track
   std::optional<double> m_lateSince;         ///< first of the readings now left out, s
   std::optional<Pose2D> m_before;            ///< at the last scan
-  double m_timeBefore = 0;                   ///< of the last scan, s
+  double m_timeBefore = -INFINITY;           ///< of the last scan, s
 };
 
 }  // namespace polemcl

@@ -15,14 +15,15 @@ using namespace testing_apps;
 
 namespace {
 
-/// One task is given to an `sbatch` that takes it, and to a `squeue` that fails `failures` times
-/// before it says that nothing is queued.
+/// Two tasks are given to an `sbatch` that takes them, and to a `squeue` that fails `failures`
+/// times before it says that nothing is queued.
 class BatchSlurm : public testing::Test {
  protected:
   BatchSlurm() : m_path(std::getenv("PATH")) {
     ::setenv("PATH", (m_folder.path().string() + ":" + m_path).c_str(), 1);
     command("sbatch", "echo 7");
     m_options.pollSeconds = 0.01;
+    m_options.largestArray = 1;
   }
   ~BatchSlurm() override { ::setenv("PATH", m_path.c_str(), 1); }
 
@@ -32,21 +33,20 @@ class BatchSlurm : public testing::Test {
                           " ] || { echo Unable to contact slurm controller; exit 1; }");
     BatchPlan plan;
     plan.name = "try";
-    plan.tasks = {BatchTask({TaskKind::poles, {"a"}})};
-    runOnSlurm(BatchFolder(m_folder / "out"), plan, {&plan.tasks[0]}, m_options, {});
+    for (const char* name : {"a", "b"}) plan.tasks.push_back(BatchTask({TaskKind::poles, {name}}));
+    runOnSlurm(BatchFolder(m_folder / "out"), plan, {&plan.tasks[0], &plan.tasks[1]}, m_options,
+               {});
   }
   std::size_t asked() {
     const std::string lines = readText(m_folder / "asked");
     return static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n'));
   }
 
-  SlurmOptions m_options;
-
- private:
   void command(const std::string& name, const std::string& text) {
     writeText(m_folder / name, "#!/bin/sh\n" + text + "\n");
     fs::permissions(m_folder / name, fs::perms::owner_all);
   }
+  SlurmOptions m_options;
   std::string m_path;
   TempFolder m_folder;
 };
@@ -61,7 +61,13 @@ TEST_F(BatchSlurm, WaitsWhileTheControllerDoesNotAnswer) {
 TEST_F(BatchSlurm, SaysWhichJobsMayRunWhenItGivesUp) {
   m_options.patienceSeconds = 0.05;
   EXPECT_REFUSED(runWith(1000), "squeue failed: Unable to contact slurm controller",
-                 "before --resume: scancel 7");
+                 "before --resume: scancel 7 7");
+}
+
+TEST_F(BatchSlurm, SaysWhichJobsMayRunWhenTheNextIsRefused) {
+  command("sbatch", "[ ! -e " + (m_folder / "one").string() + " ] || exit 1; echo >" +
+                        (m_folder / "one").string() + "; echo 7");
+  EXPECT_REFUSED(runWith(0), "sbatch failed", "before --resume: scancel 7");
 }
 
 }  // namespace polemcl::test_batch_slurm

@@ -97,6 +97,20 @@ TEST_F(LocalizerTest, AJumpOfTheOdometryIsBridged) {
   EXPECT_EQ(own.odometryJumps(), 1u);
 }
 
+TEST_F(LocalizerTest, ANewStartTakesTimesThatBeginAgain) {
+  Localizer own = localizer();
+  own.start(street.truth.front());
+  for (std::size_t i = 0; i < scans / 2; ++i)
+    own.step(scans_poles[i], {odometry[i].x + 5000, odometry[i].y, odometry[i].yaw});
+  own.start(street.truth.front());
+  for (std::size_t i = 0; i < scans; ++i) {  // beyond the end of the first drive
+    const auto update = own.step(scans_poles[i], odometry[i]);
+    ASSERT_TRUE(update.estimate);
+    EXPECT_NEAR(update.estimate->mean.x, street.truth[i].x, 0.3) << i;
+  }
+  EXPECT_EQ(own.odometryJumps(), 0u);
+}
+
 TEST_F(LocalizerTest, SaysWhatIsWrong) {
   Localizer own = localizer();
   EXPECT_HAS(messageOf([&] { own.step(scans_poles[0], {}); }), "has not been started");
@@ -288,7 +302,7 @@ TEST_F(OdometryTest, SaysWhatIsMissing) {
 
 TEST_F(OdometryTest, ScansInAGapOfTheReadingsAreRefused) {
   Localizer own = started();
-  for (const double later : {-0.6, 0.4}) {
+  for (const double later : {-1.8, 0.4}) {
     OdometryReading reading = readingAt(0);
     reading.time += later;
     own.addOdometry(reading);
@@ -322,14 +336,16 @@ TEST_F(OdometryTest, AClockThatWasSetIsFollowedAfterASecond) {
 
 TEST_F(OdometryTest, AfterAClockThatBeginsAgainANewStartTakesItsTimes) {
   Localizer own = started();
-  for (int round = 0; round < 2; ++round)
-    for (std::size_t i = 0; i < number; ++i) {
-      own.addOdometry(readingAt(i));
-      if (round == 1 && i < 6) continue;
-      if (round == 1 && i == 6) own.start({6, 0, 0}, 0.3, 0.1);
-      const auto update = step(own, i);
-      EXPECT_NEAR(update.estimate->mean.x, static_cast<double>(i), 0.3) << i;
-    }
+  for (std::size_t i = 0; i < number; ++i) {
+    own.addOdometry(readingAt(i));
+    step(own, i);
+  }
+  for (std::size_t i = 0; i < number; ++i) own.addOdometry(readingAt(i));
+  own.start({6, 0, 0}, 0.3, 0.1);
+  for (std::size_t i = 6; i < number; ++i) {
+    const auto update = step(own, i);
+    EXPECT_NEAR(update.estimate->mean.x, static_cast<double>(i), 0.3) << i;
+  }
 }
 
 /// Hours without a scan must not fill the memory.

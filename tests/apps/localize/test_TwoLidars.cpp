@@ -72,8 +72,8 @@ TEST_F(TwoLidars, WithoutNamesTheFirstIsUsedAndTheOtherIsNamed) {
   const auto outcome = runWithTruth({"--set", "vehicle.lidars="});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_HAS(outcome.out,
-             "observations of other sensors, not used: 39 (polemcl::CObservationPoles rear); "
-             "[vehicle] lidars lists the LiDARs to use");
+             "scans of other sensors, not used: 39 (polemcl::CObservationPoles rear); "
+             "[vehicle] lidars lists the sensor labels to use");
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ struct OdometryReading {
   /// Used at the first scan, to which no motion leads; passed over unless finite.
   std::optional<Velocity> velocity = {};
   /// Covariance of (vx, vy, yaw rate), m²/s², m·rad/s², rad²/s², with errors that are independent
-  /// from reading to reading. None, or no covariance: `[motion]` says how exact motions are.
+  /// from reading to reading. None, zero or negative: `[motion]` says how exact motions are.
   std::optional<Eigen::Matrix3d> velocityCovariance = {};
 };
 
@@ -108,7 +108,8 @@ class POLEMCL_EXPORT Localizer {
   void setRecordedTiming(const ScanTiming& timing);
   /// \brief The next scan; its motion is that of the odometry, interpolated at its time.
   /// \param T_robot_lidar Pose of the frame of the points in the robot's, m.
-  /// \throws Error as step() above, and when the readings round the scan are not within 0.5 s.
+  /// \throws Error as step() above, and where odometry is missing: no reading within 0.5 s
+  /// at its begin or end, or readings more than 2 s apart round the scan.
   LocalizationUpdate step(double time, const PointsView& points,
                           const Eigen::Isometry3d& T_robot_lidar);
   /// \brief Pose of the frame of the odometry in that of the map at the last scan (ROS: `map` to

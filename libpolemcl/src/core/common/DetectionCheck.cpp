@@ -9,7 +9,8 @@
 namespace polemcl {
 
 const char* faultOf(const PoleDetection& pole) {
-  if (!std::isfinite(pole.x + pole.y + pole.radius + pole.bottom + pole.top))
+  if (!std::isfinite(pole.x + pole.y + pole.radius + pole.bottom + pole.top + pole.timeOffset +
+                     pole.turnRate))
     return "a number that is not finite";
   if (std::max(std::abs(pole.x), std::abs(pole.y)) > PoleIndex::farthest)
     return "a place more than 1e9 m away";

@@ -25,8 +25,8 @@ namespace polemcl::io {
 ///
 /// With an IMU, the yaw of a motion is the integral of the angular velocity about the robot's z
 /// axis, with the variance of the IMU in the same way. The displacement turns by half of the change
-/// of the yaw, as on an arc. Where the IMU was silent for more than 0.2 s, the odometry's yaw
-/// stays. \param odometry Topic, index in bag.topics(). \param imu The same; nothing: not used.
+/// of the yaw, as on an arc. Where the IMU was silent for over 0.2 s, the odometry's yaw stays.
+/// \param odometry Topic, index in bag.topics(). \param imu The same; nothing: not used.
 /// \param frames Static transforms; if the pose of the IMU is not among them, its z axis is taken
 ///        for that of the robot, with a note.
 /// \return Frame of the robot: the child frame of the odometry.

@@ -62,7 +62,9 @@ void LiveQueue::push(const CObservation::Ptr& observation) {
       pushScan({time, Clock::now(), observation});
     } else if (dynamic_cast<const mrpt::obs::CObservationOdometry*>(observation.get())) {
       m_odometry.push_back(observation);
-      m_reached = std::max(m_reached.value_or(time), time);
+      if (!m_reached) m_odometryLabel = observation->sensorLabel;  // only the first is used
+      if (observation->sensorLabel == m_odometryLabel)
+        m_reached = std::max(m_reached.value_or(time), time);
     }
   }
   m_changed.notify_one();

@@ -95,7 +95,8 @@ class LiveQueue : public EntrySource {
   SteadyTimes m_times;
   std::deque<Waiting> m_scans;  ///< in the order of their times
   std::deque<mrpt::obs::CObservation::Ptr> m_odometry;
-  std::optional<double> m_reached;        ///< time of the latest odometry, s
+  std::optional<double> m_reached;        ///< time of the latest odometry that is used, s
+  std::string m_odometryLabel;            ///< of its sensor
   std::optional<std::string> m_label;     ///< of the first scan
   std::map<std::string, double> m_taken;  ///< time of the last scan taken, s, by label
   std::size_t m_dropped = 0;

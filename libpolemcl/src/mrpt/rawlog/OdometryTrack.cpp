@@ -1,5 +1,6 @@
 #include "mrpt/rawlog/OdometryTrack.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -45,9 +46,14 @@ std::optional<Pose2D> OdometryTrack::at(double time) const {
   if (nearest->first == time) return nearest->second;
   const bool isOutside = after == first || after == m_readings.end();
   if (isOutside && std::abs(time - nearest->first) > kReach) return std::nullopt;
-  if (m_readings.size() == 1) return nearest->second;
-  if (after == first) return goneOn(*std::next(first), *first, time);
-  if (after == m_readings.end()) return goneOn(*std::prev(nearest), *nearest, time);
+  if (after == first) {
+    const auto later = m_readings.lower_bound(first->first + kBaseline);
+    return later == m_readings.end() ? first->second : goneOn(*later, *first, time);
+  }
+  if (after == m_readings.end()) {
+    const auto later = m_readings.upper_bound(nearest->first - kBaseline);
+    return later == first ? nearest->second : goneOn(*std::prev(later), *nearest, time);
+  }
   const auto before = std::prev(after);
   const double share = (time - before->first) / (after->first - before->first);
   const Pose2D step = relative(before->second, after->second);
@@ -56,10 +62,9 @@ std::optional<Pose2D> OdometryTrack::at(double time) const {
 
 bool OdometryTrack::isNear(double time) const {
   const auto after = m_readings.lower_bound(time);
-  const bool isBefore = after != m_readings.begin(), isAfter = after != m_readings.end();
-  if (isAfter && after->first == time) return true;
-  return (isBefore || isAfter) && (!isAfter || after->first - time <= kReach) &&
-         (!isBefore || time - std::prev(after)->first <= kReach);
+  if (after == m_readings.begin() || after == m_readings.end() || after->first == time)
+    return at(time).has_value();
+  return after->first - std::prev(after)->first <= kLongestGap;
 }
 
 void OdometryTrack::clear() {
@@ -68,9 +73,11 @@ void OdometryTrack::clear() {
 }
 
 void OdometryTrack::forgetBefore(double time) {
-  const auto after = m_readings.upper_bound(time);
-  if (std::distance(m_readings.begin(), after) > 2)  // two tell how the motion goes on
-    m_readings.erase(m_readings.begin(), std::prev(after, 2));
+  if (m_readings.empty()) return;
+  // What tells how the last motion goes on stays.
+  const double oldest = std::min(time, m_readings.rbegin()->first) - kBaseline;
+  const auto after = m_readings.upper_bound(oldest);
+  if (after != m_readings.begin()) m_readings.erase(m_readings.begin(), std::prev(after));
 }
 
 }  // namespace polemcl

@@ -22,16 +22,22 @@ class OdometryTrack {
 
   /// \brief For this time before and after the readings, the first and last motion go on, s.
   static constexpr double kReach = 0.5;
+  /// \brief Readings that are this far apart tell such a motion; where there are none, the pose
+  /// stays, s.
+  static constexpr double kBaseline = 0.09;
+  /// \brief Longest time between two readings that tell the poses between them, s.
+  static constexpr double kLongestGap = 2;
 
   void add(double time, const Pose2D& pose);
   /// \brief Number of jumps so far.
   std::size_t jumps() const { return m_jumps; }
   bool empty() const { return m_readings.empty(); }
-  /// \brief Whether there is a reading at `time` or later. A single one, which tells no motion,
-  /// must be of that time.
+  /// \brief Whether there is a reading at `time` or later. If all are later, they must tell the
+  /// motion that leads to the first.
   bool reaches(double time) const {
-    return !m_readings.empty() && m_readings.rbegin()->first >= time &&
-           (m_readings.size() > 1 || m_readings.begin()->first == time);
+    if (m_readings.empty() || m_readings.rbegin()->first < time) return false;
+    const double first = m_readings.begin()->first;
+    return first <= time || m_readings.rbegin()->first - first >= kBaseline;
   }
   /// \brief Whether all times from `begin` to `end` lie between readings.
   bool covers(double begin, double end) const {
@@ -39,7 +45,7 @@ class OdometryTrack {
   }
   /// \brief Pose interpolated between the readings around `time`; nullopt beyond kReach.
   std::optional<Pose2D> at(double time) const;
-  /// \brief Whether a reading is of `time`, or those before and after are within kReach of it.
+  /// \brief Whether at() knows the pose, and between two readings these are not too far apart.
   bool isNear(double time) const;
   /// \brief A pose of at() as the readings since the last jump state it.
   Pose2D asRead(const Pose2D& pose) const { return relative(m_origin, pose); }

@@ -214,6 +214,7 @@ SequenceCounts Stream::finish() const {
   }
   counts.otherSensors = m_source.otherSensors();
   counts.otherLabels = m_source.otherLabels();
+  counts.otherOdometry = m_source.otherOdometry();
   counts.unknownMotions = m_source.unknownMotions();
   counts.dropped = m_source.dropped();
   counts.odometryJumps = m_source.odometryJumps();

@@ -60,9 +60,10 @@ struct SequenceCounts {
   std::size_t points = 0;         ///< valid points of all scans
   std::size_t invalidPoints = 0;  ///< points dropped: NaN, infinite or at the origin
   std::size_t poles = 0;
-  std::size_t otherSensors = 0;            ///< scans and odometry of other sensors, ignored
-  std::set<std::string> otherLabels = {};  ///< class and sensor label of those
-  std::vector<LidarCounts> lidars = {};    ///< as in VehicleOptions; empty if none was fused
+  std::size_t otherSensors = 0;              ///< ignored scans of other sensors
+  std::set<std::string> otherLabels = {};    ///< class and sensor label of those
+  std::set<std::string> otherOdometry = {};  ///< labels of odometry that is not used
+  std::vector<LidarCounts> lidars = {};      ///< as in VehicleOptions; empty if none was fused
   std::size_t unknownMotions = 0;  ///< scans without odometry: after the first one; of sensors,
                                    ///< these are left out
   std::size_t dropped = 0;         ///< scans of sensors that nobody had time for

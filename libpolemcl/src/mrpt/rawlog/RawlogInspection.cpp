@@ -58,13 +58,13 @@ std::vector<PointOrder> ordersOf(const std::vector<PointsView>& scans) {
   return orders;
 }
 
-/// What all scans say alike of their measuring times, as packets do.
+/// What all scans say alike of their measuring times, as packets do. The first may be cut short.
 ScanTiming commonTiming(const std::vector<ScanSource::Scan>& scans) {
-  constexpr double kSameCut = 5 * degree;
+  constexpr double kSameCut = 15 * degree;  // turns are cut between two packets
   ObservationPoints points{SensorOptions()};
   std::optional<ScanTiming> common;
-  for (const auto& scan : scans) {
-    points.read(*scan.parts.front().observation);
+  for (std::size_t i = scans.size() > 1 ? 1 : 0; i < scans.size(); ++i) {
+    points.read(*scans[i].parts.front().observation);
     const ObservationPoints::Loan loan(points);
     const auto& own = points.timing();
     if (!own || (common && std::abs(wrapAngle(own->cut - common->cut)) > kSameCut)) return {};

@@ -22,8 +22,8 @@ struct RawlogInspection {
   /// `[sensor]` for this rawlog; `origin` is along the robot's axes. If `sensor.onItsHead`, the
   /// options are for the same clouds with a sensor pose that is corrected accordingly.
   SensorOptions options;
-  /// As the comment of the rawlog states it, or all packets of the examined scans alike; else not
-  /// `known()`, and if the cut moves.
+  /// As the comment of the rawlog states it, or the packets of the examined scans do. Not `known()`
+  /// where they do not, or where the cut moves.
   ScanTiming stated;
   /// One for each examined scan; empty if the points of one are not in the order of measuring.
   std::vector<PointOrder> orders;

@@ -146,11 +146,6 @@ std::optional<std::size_t> ScanSource::lidarOf(const CObservation& observation) 
   return sensorOf(observation) == m_sensor ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-void ScanSource::passOver(const CObservation& observation) {
-  ++m_otherSensors;
-  m_otherLabels.insert(sensorOf(observation));
-}
-
 void ScanSource::take(const CObservation::Ptr& observation, const RawlogEntry& entry) {
   const double time = mrpt::Clock::toDouble(observation->timestamp);
   if (const auto odometry = std::dynamic_pointer_cast<CObservationOdometry>(observation)) {
@@ -158,7 +153,7 @@ void ScanSource::take(const CObservation::Ptr& observation, const RawlogEntry& e
     if (odometry->sensorLabel == m_odometryLabel)
       m_odometry.add(time, planar(odometry->odometry));
     else
-      passOver(*odometry);
+      m_otherOdometry.insert(odometry->sensorLabel);
     return;
   }
   if (!isScan(*observation)) {
@@ -168,7 +163,8 @@ void ScanSource::take(const CObservation::Ptr& observation, const RawlogEntry& e
   }
   const auto lidar = lidarOf(*observation);
   if (!lidar) {
-    passOver(*observation);
+    ++m_otherSensors;
+    m_otherLabels.insert(sensorOf(*observation));
     return;
   }
   if (observation->timestamp == INVALID_TIMESTAMP)

@@ -62,6 +62,8 @@ class ScanSource {
   const ScanTiming& timing() const { return m_timing; }
   std::size_t otherSensors() const { return m_otherSensors; }
   const std::set<std::string>& otherLabels() const { return m_otherLabels; }
+  /// \brief Labels of odometry that is not used: that of another sensor came first.
+  const std::set<std::string>& otherOdometry() const { return m_otherOdometry; }
   /// \brief Whether the scans are those of LiDARs to be fused.
   bool isFused() const { return m_groups.has_value(); }
   /// \brief Scans of a LiDAR that came too late.
@@ -79,7 +81,6 @@ class ScanSource {
   void take(const RawlogEntry& entry);
   void take(const mrpt::obs::CObservation::Ptr& observation, const RawlogEntry& entry);
   std::optional<std::size_t> lidarOf(const mrpt::obs::CObservation& observation);
-  void passOver(const mrpt::obs::CObservation& observation);
   void add(LidarScan scan);
   void takeGroups();
   void requireLidars() const;
@@ -104,7 +105,7 @@ class ScanSource {
   const VehicleOptions m_vehicle;
   std::optional<ScanGroups> m_groups;          ///< of several LiDARs; not for poles fused before
   std::vector<std::size_t> m_ofLidar, m_late;  ///< scans of each LiDAR: all, and those too late
-  std::set<std::string> m_otherLabels;
+  std::set<std::string> m_otherLabels, m_otherOdometry;
   mrpt::obs::CObservation::Ptr m_planar;  ///< the first scan of one plane only
   std::size_t m_motions = 0;              ///< by actions, so far
   std::size_t m_scans = 0, m_released = 0, m_otherSensors = 0, m_unknownMotions = 0;

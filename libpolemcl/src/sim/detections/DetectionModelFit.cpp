@@ -343,7 +343,7 @@ void requireTwoDays(const ObservedStreet& street) {
 
 void requireSameSensing(const SimulatedDrive& drive, const SimulatedDrive& first) {
   const auto differ = [](const std::string& what) {
-    throw Error("the drives differ in " + what + "; a model is of one");
+    throw Error("the drives differ in " + what + "; a model is made for a single one");
   };
   if (drive.options().spacing != first.options().spacing) differ("spacing_m");
   if (drive.options().height != first.options().height) differ("[sensor] height_m");

@@ -60,9 +60,10 @@ void writeTruePoles(const std::filesystem::path& file, const std::vector<TruePol
 
 /// \brief Writes velodyne/*.bin, labels/*.label, times.txt, poses.txt, odometry.txt, poles_gt.csv,
 /// and with `motion_distortion` scan_timing.ini, to `directory`, which must exist. Scans are
-/// simulated in parallel; the bytes do not depend on the number of threads. \param progress Called
-/// after each scan with (done, total), from one thread at a time. \param beams As for
-/// SimulatedDrive. \throws Error when an option is out of range or a file cannot be written.
+/// simulated in parallel; the bytes do not depend on the number of threads.
+/// \param progress Called after each scan with (done, total), from one thread at a time.
+/// \param beams As for SimulatedDrive.
+/// \throws Error when an option is out of range or a file cannot be written.
 SimulationSummary simulate(const SimulationOptions& options, const std::filesystem::path& directory,
                            const std::function<void(std::size_t, std::size_t)>& progress = {},
                            const SensorOptions& beams = {});
