@@ -97,8 +97,8 @@ class POLEMCL_EXPORT Localizer {
   /// @{
   /// \brief s; a scan that comes later than that after its time finds no odometry.
   static constexpr double keptOdometry = 60;
-  /// \brief A reading of the odometry, at any rate. One that is not later than the one before is
-  /// left out; after a second of such readings the clock was set, and the odometry begins anew.
+  /// \brief A reading of the odometry, at 1 Hz or more. One that is not later than the one before
+  /// is left out; after a second of such readings the clock was set, and the odometry begins anew.
   /// Readings are kept for `keptOdometry`. \throws Error when time or pose is not finite.
   void addOdometry(const OdometryReading& reading);
   /// \brief Whether there is odometry at `time` or later: the scan of that time can be taken.
