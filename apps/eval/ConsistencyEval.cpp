@@ -109,6 +109,7 @@ Json consistencyJson(const ConsistencyScore& score) {
           {"nees_heading_mean", score.neesHeadingMean},
           {"coverage_95", score.coverage95},
           {"longest_beyond_5_sigma_s", score.longestBeyond5},
+          {"worst_beyond_5_sigma_m", score.errorBeyond5},
           {"poses", score.samples}};
 }
 

@@ -3,7 +3,7 @@
 # Usage: share/experiments/global.sh TRACKS OUT [--dense] [--quick]
 #   TRACKS   folder of the roads kaist01.txt.gz and kaist02.txt.gz (sensor poses, 12 numbers a line)
 #   OUT      gets maps, drives, one JSON file a city and result.json
-#   --dense  about three times as many poles as the simulator's default
+#   --dense  2.6 times as many poles as the simulator's default
 #   --quick  one city, 40 starts
 # The poles of each scan are drawn from share/models/hdl32e.json; odometry is that of wheels. Worlds 601 to 604; settings
 # were chosen on other worlds. Programs: build/bin, or POLEMCL_BIN. Needs jq.

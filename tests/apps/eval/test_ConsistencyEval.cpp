@@ -59,6 +59,7 @@ TEST_F(ConsistencyEval, CountsOnlyWhatIsOkWhenToldTheHealth) {
   EXPECT_EQ(json["unmatched"], 10);
   EXPECT_NEAR(json["nees_mean"], 1, 1e-6);
   EXPECT_EQ(json["longest_beyond_5_sigma_s"], 0);
+  EXPECT_EQ(json["worst_beyond_5_sigma_m"], 0);
   const std::string text = run(command).out;
   for (const char* line :
        {"\nall              19    1.000", "\n11 poses that are not ok left out\n",
@@ -67,6 +68,7 @@ TEST_F(ConsistencyEval, CountsOnlyWhatIsOkWhenToldTheHealth) {
   writeCov("cov.csv", 40, 0.6, 5);
   EXPECT_NEAR(figures(command)["longest_beyond_5_sigma_s"], 29 - 13, 1e-9)
       << "12 is not ok, the truth ends with 29";
+  EXPECT_NEAR(figures(command)["worst_beyond_5_sigma_m"], 0.6, 1e-9);
   writeWay("truth.tum", 30, 1, [](int i) { return i < 20 || i > 22; });
   EXPECT_NEAR(figures(command)["longest_beyond_5_sigma_s"], 29 - 23, 1e-9);
 }

@@ -154,7 +154,7 @@ class OusterPacketsTest : public testing::Test {
   }
 
   const TempFolder folder;
-  const OusterModel model;
+  const OusterModel model{};
 };
 
 /// A metre in each column of a ring without tilt, seen from the axis.

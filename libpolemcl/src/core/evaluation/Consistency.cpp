@@ -66,6 +66,7 @@ ConsistencyScore scoreConsistency(const std::vector<ConsistencySample>& samples)
     heading += error.z() * error.z() / covariance(2, 2);
     covered += planar <= chiSquare95of2 ? 1 : 0;
     beyond5.add(samples[i].time, planar > 25, samples[i].isFirst);
+    if (planar > 25) score.errorBeyond5 = std::max(score.errorBeyond5, error.head<2>().norm());
   }
   const double count = static_cast<double>(samples.size());
   score.neesMean = sum / count;

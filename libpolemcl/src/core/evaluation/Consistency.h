@@ -25,6 +25,7 @@ struct ConsistencyScore {
   double neesHeadingMean = 0;   ///< over yaw
   double coverage95 = 0;        ///< share of samples whose 95 % position ellipse holds the truth
   double longestBeyond5 = 0;    ///< longest time beyond 5 sigma of the position without a break, s
+  double errorBeyond5 = 0;      ///< greatest position error of such a sample, m; 0 without any
 };
 
 /// Square of the 95 % quantile of a two-dimensional Gaussian's Mahalanobis distance (χ², 2).
