@@ -225,8 +225,9 @@ void BatchFolder::remove(const BatchTask& task) const {
 void BatchFolder::noteFailure(const BatchTask& task, const std::string& reason) const {
   try {
     writeJson(m_path / "failed" / (task.id + ".json"), Json{{"task", task.id}, {"reason", reason}});
-  } catch (const Error&) {
-    // A full disk: the one who asked has been told, and the task counts as open.
+  } catch (const std::exception&) {
+    // A full disk, or a folder that is gone: the one who asked has been told, and the task counts
+    // as open.
   }
 }
 

@@ -3,7 +3,6 @@
 #include <mrpt/obs/CObservationOdometry.h>
 
 #include <atomic>
-#include <csignal>
 #include <mutex>
 
 #include "cli/Progress.h"
@@ -18,38 +17,12 @@
 namespace polemcl::apps {
 namespace {
 
-std::atomic<bool> s_signalled{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set by a signal handler");
-
-/// Takes the signals that end the program as the wish to end the drive, once each.
-class EndSignals {
- public:
-  EndSignals() {
-    s_signalled = false;
-    struct sigaction action {};
-    action.sa_handler = [](int) { s_signalled = true; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
-    sigaction(SIGINT, &action, &m_interrupt);
-    sigaction(SIGTERM, &action, &m_terminate);
-  }
-  ~EndSignals() {
-    sigaction(SIGINT, &m_interrupt, nullptr);
-    sigaction(SIGTERM, &m_terminate, nullptr);
-  }
-  EndSignals(const EndSignals&) = delete;
-  EndSignals& operator=(const EndSignals&) = delete;
-
- private:
-  struct sigaction m_interrupt, m_terminate;
-};
-
 /// Notices that nothing is consumed, and says what the sensors do not give.
 class GapWatch {
  public:
   explicit GapWatch(const LiveDriveOptions& drive) : m_drive(drive) {}
 
   void observed(const mrpt::obs::CObservation& observation) {
-    const std::lock_guard lock(m_mutex);
     if (isScan(observation))
       m_scan = Clock::now();
     else if (dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation))
@@ -60,18 +33,14 @@ class GapWatch {
     consume(scan);
     setBusy(false);
   }
-  /// Called every few milliseconds.
+  /// Called every few milliseconds. A gap is told before the scan that ends it is consumed.
   void look() {
-    std::string warning;
-    {
-      const std::lock_guard lock(m_mutex);
-      if (m_isBusy || secondsSince(m_told) < m_drive.longestGap) return;
-      m_told = Clock::now();
-      if (!m_isWarned) warning = text();
-      m_isWarned = true;
-    }
+    const std::lock_guard lock(m_mutex);
+    if (m_isBusy || secondsSince(m_told) < m_drive.longestGap) return;
+    m_told = Clock::now();
     if (m_drive.gap) m_drive.gap();
-    if (!warning.empty() && m_drive.warn) m_drive.warn(warning);
+    if (!m_isWarned && m_drive.warn) m_drive.warn(text());
+    m_isWarned = true;
   }
 
  private:
@@ -95,8 +64,9 @@ class GapWatch {
   }
 
   const LiveDriveOptions& m_drive;
+  std::atomic<Clock::time_point> m_scan{Clock::now()}, m_odometry{Clock::now()};
   std::mutex m_mutex;  ///< of all below
-  Clock::time_point m_scan = Clock::now(), m_odometry = m_scan, m_told = m_scan;
+  Clock::time_point m_told = Clock::now();
   bool m_isBusy = false, m_isWarned = false;
 };
 
@@ -113,14 +83,11 @@ void keep(RecordedEntries& record, std::string& failure) {
 
 LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptions& options,
                               const std::function<void(const ReadScan&)>& consume) {
-  const EndSignals signals;
-  const auto begin = ScanClock::now();
   GapWatch watch(drive);
   LiveQueueOptions queueOptions;
   queueOptions.goesOn = [&] {
     watch.look();
-    return !s_signalled && !(drive.seconds > 0 && secondsSince(begin) >= drive.seconds) &&
-           (!drive.goesOn || drive.goesOn());
+    return !drive.goesOn || drive.goesOn();
   };
   queueOptions.warn = drive.warn;
   for (const LidarOptions& lidar : options.vehicle.lidars)

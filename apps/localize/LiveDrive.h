@@ -14,7 +14,6 @@ namespace polemcl::apps {
 struct LiveDriveOptions {
   std::filesystem::path sensors;  ///< see startSensors(); also a name among the shipped ones
   std::optional<std::filesystem::path> record = {};  ///< rawlog of what is taken from the sensors
-  double seconds = 0;                                ///< ends after this time, s; 0: never
   double longestGap = 2;                             ///< more time without a scan is told, s
   std::function<bool()> goesOn = {};  ///< false ends the drive; called from one thread at a time
   /// Called after each `longestGap` without a scan, also before the first one. May be called while
@@ -29,8 +28,8 @@ struct LiveDriveResult {
   std::string failure;  ///< what ended the drive before its time; or empty
 };
 
-/// \brief Streams poles from sensors until Ctrl-C (SIGINT) or SIGTERM, the end of a PCAP file, the
-/// failure of a sensor, or the given time. A second signal ends the program at once.
+/// \brief Streams poles from sensors until `goesOn` gives false, the end of a PCAP file, or the
+/// failure of a sensor.
 ///
 /// The record gives the same poses when it is played. It is kept whatever ends the drive; when it
 /// cannot be written, that is a failure.

@@ -13,6 +13,7 @@
 #include "core/common/Binder.h"
 #include "io/data/Trajectory.h"
 #include "io/file/ErrorPlace.h"
+#include "localize/EndSignals.h"
 #include "localize/LiveDrive.h"
 #include "localize/LocalizePlayer.h"
 #include "localize/LocalizeReport.h"
@@ -92,14 +93,15 @@ std::optional<double> rateOf(const LocalizeJob& job, const AllSettings& settings
 /// Streams the rawlog, or the sensors, to the player. A rawlog has no failure. A drive ends when
 /// its stream does; a rawlog is read to its end.
 LiveDriveResult play(const LocalizeJob& job, const AllSettings& settings, const RunView& view,
-                     LocalizePlayer& player, PoseStream* stream) {
+                     LocalizePlayer& player, PoseStream* stream,
+                     const std::function<bool()>& goesOn) {
   SequenceOptions options = settings.reading();
   options.allowTruncated = job.allowTruncated;
   options.follow = job.follow;
   // Where the user steers, the view sets the pace.
   Pace pace(rateOf(job, settings),
             [&] { return view.isOpen() ? view.follows() : job.rate.has_value(); });
-  options.pace = [&](double time) { return pace.waitFor(time); };
+  options.pace = [&](double time, const auto& work) { return pace.waitFor(time, work); };
   Progress progress("localize", 0, job.quiet);
   std::mutex ofProgress;
   const auto warn = [&](const std::string& text) {
@@ -118,12 +120,10 @@ LiveDriveResult play(const LocalizeJob& job, const AllSettings& settings, const 
     progress.update(scan.index + 1, scan.expected);
   };
   if (!job.isLive()) return {streamPoles(job.input.string(), options, take), ""};
-  LiveDriveOptions drive{job.sensors, job.record, job.seconds, settings.localization.maxGap};
+  LiveDriveOptions drive{job.sensors, job.record, settings.localization.maxGap};
   drive.warn = warn;
-  if (stream) {
-    drive.gap = [stream] { stream->addGap(); };
-    drive.goesOn = [stream] { return stream->failure().empty(); };
-  }
+  drive.goesOn = [&] { return goesOn() && (!stream || stream->failure().empty()); };
+  if (stream) drive.gap = [stream] { stream->addGap(); };
   return streamSensors(drive, options, take);
 }
 
@@ -202,12 +202,19 @@ LocalizeResult localize(const LocalizeJob& job) {
   const LocalizationMap prepared(map);
   const auto begin = ScanClock::now();
   std::optional<PoseStream> stream;
-  if (job.stream) stream.emplace(*job.stream);
+  std::optional<EndSignals> signals;
+  const auto goesOn = [&] {
+    return !(signals && EndSignals::came()) &&
+           !(job.seconds > 0 && secondsSince(begin) >= job.seconds);
+  };
+  if (job.stream) stream.emplace(*job.stream, goesOn);
+  if (job.isLive()) signals.emplace();
   std::optional<RunBag> bag;
   if (job.bag) bag.emplace(*job.bag);
   LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view,
                         stream ? &*stream : nullptr, bag ? &*bag : nullptr);
-  const LiveDriveResult drive = play(job, settings, view, player, stream ? &*stream : nullptr);
+  const LiveDriveResult drive =
+      play(job, settings, view, player, stream ? &*stream : nullptr, goesOn);
   const std::string failure = drive.failure.empty() && stream ? stream->failure() : drive.failure;
   if (!failure.empty() && drive.counts.scans == 0) throw Error(failure);
   facts.counts = drive.counts;
@@ -216,6 +223,7 @@ LocalizeResult localize(const LocalizeJob& job) {
   result.timings.rate = rateOf(job, settings);
   if (bag) bag->commit();
   writeResults(folder, facts, settings, result);
+  signals.reset();
   if (!job.quiet) {
     std::ostream& out = job.stream == "-" ? std::cerr : std::cout;
     printTable(out, facts, result);

@@ -1,7 +1,5 @@
 #include "localize/Pace.h"
 
-#include <tbb/task_group.h>
-
 #include <algorithm>
 #include <thread>
 #include <utility>
@@ -28,15 +26,15 @@ ScanClock::time_point Pace::dueOf(double time) {
   return m_due;
 }
 
-ScanClock::time_point Pace::waitFor(double time) {
-  const auto goesOn = [&] { return m_rate && (!m_goesOn || m_goesOn()); };
+ScanClock::time_point Pace::waitFor(double time, const std::function<bool()>& work) {
+  const auto goesOn = [&] { return m_rate && (!m_goesOn || m_goesOn()) && (!work || work()); };
   if (!goesOn()) {
     restart();
     return ScanClock::now();
   }
   dueOf(time);
   // In short pieces: a window that is closed, or an error elsewhere, ends the waiting.
-  while (ScanClock::now() < m_due && goesOn() && !tbb::is_current_task_group_canceling())
+  while (ScanClock::now() < m_due && goesOn())
     std::this_thread::sleep_for(
         std::min<ScanClock::duration>(m_due - ScanClock::now(), std::chrono::milliseconds(50)));
   return std::min(m_due, ScanClock::now());

@@ -20,9 +20,9 @@ class Pace {
   /// \param goesOn False from the moment on that no scan is to wait any more; may be empty.
   explicit Pace(std::optional<double> rate, std::function<bool()> goesOn = {});
 
-  /// \brief Waits until the scan of this time (s) is due; ends early when the work is cancelled.
+  /// \brief Waits until the scan of this time (s) is due, or `work` gives false: it has failed.
   /// \return When it was due; without a rate, now.
-  ScanClock::time_point waitFor(double time);
+  ScanClock::time_point waitFor(double time, const std::function<bool()>& work = {});
   /// \brief The same without the wait.
   ScanClock::time_point dueOf(double time);
   /// \brief The clock starts again with the next scan.

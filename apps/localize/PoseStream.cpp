@@ -1,5 +1,10 @@
 #include "localize/PoseStream.h"
 
+#include <ext/stdio_filebuf.h>
+
+#include <fcntl.h>
+#include <poll.h>
+
 #include <csignal>
 #include <iostream>
 
@@ -34,14 +39,20 @@ nlohmann::ordered_json lineOf(std::size_t scan, const LocalizationUpdate& update
 
 }  // namespace
 
-PoseStream::PoseStream(const std::filesystem::path& target)
+PoseStream::PoseStream(const std::filesystem::path& target, std::function<bool()> goesOn)
     : m_target(target),
-      m_out(target == "-" ? std::cout : m_file),
+      m_goesOn(std::move(goesOn)),
+      m_out(std::cout.rdbuf()),
       m_last(lineOf(0, LocalizationUpdate(), 0)) {
   std::signal(SIGPIPE, SIG_IGN);
-  if (target != "-") m_file.open(target, std::ios::trunc);
-  if (!m_out) throw Error(target.string() + ": cannot be created for --stream");
+  if (target == "-") return;
+  m_descriptor = open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (m_descriptor < 0) throw Error(target.string() + ": cannot be created for --stream");
+  m_file = std::make_unique<__gnu_cxx::stdio_filebuf<char>>(m_descriptor, std::ios::out);
+  m_out.rdbuf(m_file.get());
 }
+
+PoseStream::~PoseStream() = default;
 
 void PoseStream::add(std::size_t scan, const LocalizationUpdate& update, std::size_t dropped) {
   const std::lock_guard lock(m_mutex);
@@ -67,12 +78,22 @@ std::string PoseStream::failure() const {
   return m_failure;
 }
 
+/// \return Whether a line can be written at once: a pipe then takes 4096 bytes.
+bool PoseStream::waitForReader() const {
+  constexpr int kGlance = 50;  // ms, between two questions whether the work goes on
+  pollfd target{m_descriptor, POLLOUT, 0};
+  while (poll(&target, 1, kGlance) <= 0)
+    if (m_goesOn && !m_goesOn()) return false;
+  return true;
+}
+
 void PoseStream::write(const nlohmann::ordered_json& line) {
   if (!m_failure.empty()) return;
-  m_out << line.dump() << std::endl;
-  if (!m_out)
-    m_failure = (m_target == "-" ? "standard output" : m_target.string()) +
-                ": cannot be written by --stream";
+  const std::string name = m_target == "-" ? "standard output" : m_target.string();
+  if (!waitForReader())
+    m_failure = name + ": was not read any more, the last lines of --stream are missing";
+  else if (!(m_out << line.dump() << std::endl))
+    m_failure = name + ": cannot be written by --stream";
 }
 
 }  // namespace polemcl::apps

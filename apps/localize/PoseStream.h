@@ -4,8 +4,9 @@
 /// library.
 
 #include <filesystem>
-#include <fstream>
+#include <functional>
 #include <iosfwd>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,12 +23,15 @@ namespace polemcl::apps {
 /// sensors that were dropped so far.
 ///
 /// A line that cannot be written is the last one: the results do not depend on who reads the poses.
+/// Where nobody reads, the next line waits, and with it the work.
 /// From then on the program ignores SIGPIPE, also when it ends and the C library flushes.
 class PoseStream {
  public:
   /// \param target A file, which is emptied first; "-": standard output.
+  /// \param goesOn Asked while nobody reads; false ends the wait, and no more lines are written.
   /// \throws Error when the file cannot be created.
-  explicit PoseStream(const std::filesystem::path& target);
+  explicit PoseStream(const std::filesystem::path& target, std::function<bool()> goesOn = {});
+  ~PoseStream();
   void add(std::size_t scan, const LocalizationUpdate& update, std::size_t dropped);
   /// \brief A line for a time without scans. What only a scan can tell is null in it, also `scan`
   /// and `time`. The pose stays lost if it was; otherwise it is degraded, by `time_gap`.
@@ -37,11 +41,14 @@ class PoseStream {
 
  private:
   void write(const nlohmann::ordered_json& line);
+  bool waitForReader() const;
 
   const std::filesystem::path m_target;
-  mutable std::mutex m_mutex;  ///< of all below
-  std::ofstream m_file;
-  std::ostream& m_out;
+  const std::function<bool()> m_goesOn;
+  mutable std::mutex m_mutex;              ///< of all below
+  int m_descriptor = 1;                    ///< of the target
+  std::unique_ptr<std::streambuf> m_file;  ///< of the descriptor; none of standard output
+  std::ostream m_out;
   nlohmann::ordered_json m_last;  ///< line of the last scan; before it, of a pose that is not known
   std::string m_failure;
 };

@@ -21,14 +21,18 @@ LocalizationMap localizationMap(const PoleMap& map, const AllSettings& settings)
   return {poleMap};
 }
 
+Localizer localizerOf(const PoleMap& map, const AllSettings& settings, std::uint32_t seed) {
+  const py::gil_scoped_release released;
+  return {Settings(settings), localizationMap(map, settings), seed};
+}
+
 /// A polemcl::Localizer with its lock.
 class DriveLocalizer {
  public:
   DriveLocalizer(const std::shared_ptr<PoleMap>& map, const std::filesystem::path& configFile,
                  const py::dict& values, std::optional<std::uint32_t> seed)
       : m_settings(settingsFrom(configFile, values)),
-        m_localizer(Settings(m_settings), localizationMap(*map, m_settings),
-                    seed.value_or(m_settings.runs.seed)) {}
+        m_localizer(localizerOf(*map, m_settings, seed.value_or(m_settings.runs.seed))) {}
 
   void start(const py::object& pose, std::optional<double> radius, std::optional<double> heading) {
     const Pose2D at = poseFrom(pose, "pose");

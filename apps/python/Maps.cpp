@@ -28,6 +28,7 @@ MapPtr mapOf(const py::object& poles, const Facts& info) {
   MapContent content;
   content.map.poles = mapPolesFrom(poles);
   content.map.info = info;
+  const py::gil_scoped_release released;
   return std::make_shared<PoleMap>(std::move(content));
 }
 

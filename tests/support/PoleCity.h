@@ -164,12 +164,14 @@ class PoleCity {
             put(m_things.poles, road, along + k * step, side * (beside + m_random.uniform(1, 4)),
                 0.3);
         }
-        if (!regular && m_random.chance(0.25))
-          put(m_things.poles, road, along + m_random.uniform(3, 12), side * m_random.uniform(4, 6),
-              0.5);
-        if (!regular && m_random.chance(0.3))
-          put(m_things.clutter, road, along + m_random.uniform(0, 20),
-              side * m_random.uniform(5, 14), 0.5);
+        if (!regular && m_random.chance(0.25)) {
+          const double out = side * m_random.uniform(4, 6);
+          put(m_things.poles, road, along + m_random.uniform(3, 12), out, 0.5);
+        }
+        if (!regular && m_random.chance(0.3)) {
+          const double out = side * m_random.uniform(5, 14);
+          put(m_things.clutter, road, along + m_random.uniform(0, 20), out, 0.5);
+        }
         along += regular
                      ? spacing
                      : std::max(10.0, m_random.normal(spacing, 0.06 * spacing)) / m_options.density;
@@ -183,9 +185,9 @@ class PoleCity {
     if (i + 1 >= road.size()) return;
     const Eigen::Vector2d ahead = (road[i + 1] - road[i]).normalized();
     const Eigen::Vector2d left(-ahead.y(), ahead.x());
+    const double aside = beside + jitter * m_random.normal();
     const Eigen::Vector2d place = road[i] + (along - static_cast<double>(i)) * ahead +
-                                  (beside + jitter * m_random.normal()) * left +
-                                  jitter * m_random.normal() * ahead;
+                                  aside * left + jitter * m_random.normal() * ahead;
     const auto near = [&](const Eigen::Vector2d& p) { return (p - place).squaredNorm() < 4; };
     if (std::none_of(list.begin(), list.end(), near)) list.push_back(place);
   }

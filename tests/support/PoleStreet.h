@@ -99,11 +99,14 @@ inline PoleStreet makeStreet(const StreetOptions& options = {}) {
     };
     for (const auto& pole : poles) {
       const Pose2D seen = relative(street.truth[i], {pole.x(), pole.y(), 0});
-      if (std::hypot(seen.x, seen.y) < options.range && dice.uniform() >= options.missed)
-        see(seen.x + options.detection * dice.normal(), seen.y + options.detection * dice.normal());
+      if (std::hypot(seen.x, seen.y) >= options.range || dice.uniform() < options.missed) continue;
+      const double y = seen.y + options.detection * dice.normal();
+      see(seen.x + options.detection * dice.normal(), y);
     }
-    for (double k = dice.uniform(0, options.falsePerScan); k >= 0.5; k -= 1)
-      see(dice.uniform(-20, 20), dice.uniform(-20, 20));
+    for (double k = dice.uniform(0, options.falsePerScan); k >= 0.5; k -= 1) {
+      const double y = dice.uniform(-20, 20);
+      see(dice.uniform(-20, 20), y);
+    }
     frame.points = 1000;
     street.frames.push_back(frame);
   }

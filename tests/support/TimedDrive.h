@@ -28,7 +28,8 @@ inline std::vector<TimedScan> timedDrive(const ScanTiming& timing) {
   std::vector<Eigen::Vector2d> poles;
   for (std::size_t k = 0; k < poses.size(); k += 2 * fine) {
     const Pose2D at = compose(poses[k], {0, (k / fine) % 4 ? 7.0 : -6.0, 0});
-    poles.emplace_back(at.x + uniform(random), at.y + uniform(random));
+    const double y = at.y + uniform(random);
+    poles.emplace_back(at.x + uniform(random), y);
   }
   const auto poseAt = [&](double time) {
     const auto k = static_cast<std::size_t>(time * fine);

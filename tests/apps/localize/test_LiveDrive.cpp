@@ -2,8 +2,10 @@
 /// \brief `pole-localize --sensors`: packets of a VLP-16 over the network or from a PCAP file, with
 /// the shipped example of an INI file.
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -13,6 +15,7 @@
 
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "io/data/Trajectory.h"
+#include "localize/EndSignals.h"
 #include "localize/LocalizeApp.h"
 #include "support/ExpectHas.h"
 #include "support/UdpSender.h"
@@ -65,7 +68,7 @@ class LiveDriveTest : public testing::Test {
                                  "--sensors", (folder / "sensors.ini").string(),
                                  "--map",     (folder / "map.polemap").string(),
                                  "--output",  (folder / "out").string(),
-                                 "--start",   "0,0,0,0.3,3",
+                                 "--start",   start,
                                  "--stream",  (folder / streamed).string(),
                                  "--set",     "health.max_gap_s=60"};  // slow machines
     all.insert(all.end(), more.begin(), more.end());
@@ -123,7 +126,7 @@ class LiveDriveTest : public testing::Test {
   const std::vector<StreetPole> poles = streetPoles();
   const int lidarPort = freeUdpPort(), odometryPort = freeUdpPort();
   const TempFolder folder;
-  std::string streamed = "poses.jsonl";
+  std::string streamed = "poses.jsonl", start = "0,0,0,0.3,3";
   std::atomic<bool> ended{false};
 };
 
@@ -356,6 +359,43 @@ TEST_F(LiveDriveTest, ALostReaderOfTheStreamEndsTheDriveWithItsResults) {
   sender.join();
   expectFailure(outcome, {"pipe: cannot be written by --stream; the results up to then are in"});
   EXPECT_GE(io::readPlanarTum(folder / "out/run_00.tum").size(), 5u);
+}
+
+TEST_F(LiveDriveTest, AReaderThatStallsDoesNotKeepTheDriveFromItsEnd) {
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const int reader = open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  fcntl(reader, F_SETPIPE_SZ, 4096);  // for the first line, no more
+  std::thread sender([this] {
+    drive(30, [](std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(30)); });
+    interrupt();
+  });
+  streamed = "pipe";
+  const Outcome outcome = run();
+  sender.join();
+  close(reader);
+  expectFailure(outcome, {"pipe: was not read any more", "the results up to then are in"});
+  EXPECT_GE(io::readPlanarTum(folder / "out/run_00.tum").size(), 2u);
+}
+
+TEST_F(LiveDriveTest, AFirstScanThatCannotBeUsedIsSaid) {
+  std::thread sender([this] { drive(6, [](std::size_t) {}); });
+  start = "100000,0,0,2,5";
+  const Outcome outcome = run();
+  sender.join();
+  expectFailure(outcome, {"the start at 100000 0 m lies"});
+  EXPECT_FALSE(fs::exists(folder / "out/summary.json"));
+}
+
+TEST(EndSignals, ASecondSignalOfEitherKindEndsTheProgram) {
+  const EndSignals signals;
+  EXPECT_FALSE(EndSignals::came());
+  EXPECT_EXIT(
+      {
+        std::raise(SIGINT);
+        if (EndSignals::came()) std::raise(SIGTERM);
+      },
+      testing::KilledBySignal(SIGTERM), "");
 }
 
 TEST_F(LiveDriveTest, EndsAfterTheGivenTime) {

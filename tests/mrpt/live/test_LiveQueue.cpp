@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <future>
 #include <thread>
 
@@ -314,7 +315,51 @@ TEST(LiveQueue, WhatEndsADriveIsToldWithItsCounts) {
     if (taken.index == 3) throw Error("enough");
   });
   EXPECT_EQ(counts.failure, "enough");
-  EXPECT_EQ(counts.scans, 4u);
+  EXPECT_EQ(counts.scans, 3u);
+}
+
+TEST(LiveQueue, AFailureAtTheFirstScanIsThrown) {
+  const auto queue = std::make_shared<LiveQueue>();
+  queue->push(odometry(1, 0));
+  queue->push(scan(1));
+  queue->end();
+  EXPECT_REFUSED(streamPoles(queue, "sensors.ini", options(),
+                             [](const ReadScan&) { throw Error("no start"); }),
+                 "no start");
+}
+
+TEST(LiveQueue, AFailureEndsTheWaitForTheNextScan) {
+  LiveQueueOptions options;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  std::atomic<bool> isLate{false};
+  options.goesOn = [&] {
+    isLate = std::chrono::steady_clock::now() > deadline;
+    return !isLate;
+  };
+  const auto queue = std::make_shared<LiveQueue>(options);
+  for (int i = 0; i < 3; ++i) {
+    queue->push(odometry(i, 0));
+    queue->push(scan(i));
+  }
+  const auto counts =
+      streamPoles(queue, "sensors.ini", tests::sequence::options(), [](const ReadScan& taken) {
+        if (taken.index == 1) throw Error("enough");
+      });
+  EXPECT_EQ(counts.failure, "enough");
+  EXPECT_FALSE(isLate);
+}
+
+TEST(LiveQueue, OdometryThatNobodyTakesIsBounded) {
+  LiveQueue queue;
+  const auto reading = odometry(1, 0);
+  for (std::size_t i = 0; i < LiveQueue::kMostReadings; ++i) queue.push(reading);
+  queue.push(odometry(2, 0));
+  queue.push(odometry(3, 0));
+  queue.end();
+  RawlogEntry entry;
+  std::size_t taken = 0;
+  while (queue.next(entry)) ++taken;
+  EXPECT_EQ(taken, LiveQueue::kMostReadings);
 }
 
 TEST(LiveQueue, SaysThatThereIsNoOdometry) {

@@ -123,6 +123,24 @@ TEST(CObservationPoles, MovesPolesToTheRobotFrame) {
 }
 
 // Roll and pitch do not affect the planar frame.
+/// MRPT computes the angles of a pose when they are asked for, in const functions as well.
+struct PosePeek : mrpt::poses::CPose3D {
+  static bool hasAngles(const mrpt::poses::CPose3D& pose) {
+    return pose.*(&PosePeek::m_ypr_uptodate);
+  }
+};
+
+TEST(CObservationPoles, ChangesNothingLateSoThatThreadsCanShareIt) {
+  CObservationPoles turned;
+  const mrpt::poses::CPose3D a(1, 2, 3, 0.1, 0.2, 0.3), b(3, 2, 1, 0.3, 0.2, 0.1);
+  turned.setSensorPose(a + b);
+  EXPECT_TRUE(PosePeek::hasAngles(turned.sensorPose));
+  const auto read =
+      std::dynamic_pointer_cast<CObservationPoles>(samples::objectFrom(samples::bytesOf(turned)));
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(PosePeek::hasAngles(read->sensorPose));
+}
+
 TEST(CObservationPoles, OnlyThePlanarPartOfTheSensorPoseCounts) {
   CObservationPoles scan = samples::observation();
   scan.setSensorPose(mrpt::poses::CPose3D(1, 2, 9, M_PI / 2, 0.1, M_PI));

@@ -2,6 +2,7 @@
 #include <mrpt/obs/CObservation2DRangeScan.h>
 
 #include <cmath>
+#include <thread>
 
 #include "support/ExpectHas.h"
 #include "support/SequenceFiles.h"
@@ -328,7 +329,7 @@ TEST_F(PoleSequenceTest, ThePaceSeesEachScanInOrderBeforeItIsConsumed) {
   std::vector<double> asked;
   const ScanClock::time_point begin = ScanClock::now();
   auto o = options();
-  o.pace = [&](double time) {
+  o.pace = [&](double time, const auto&) {
     asked.push_back(time);
     return begin + std::chrono::seconds(asked.size());
   };
@@ -339,8 +340,30 @@ TEST_F(PoleSequenceTest, ThePaceSeesEachScanInOrderBeforeItIsConsumed) {
   });
   ASSERT_EQ(asked.size(), 20u);
   for (std::size_t i = 0; i < 20; ++i) EXPECT_NEAR(asked[i], double(i + 1), 1e-6);
-  o.pace = [](double) -> ScanClock::time_point { throw std::domain_error("enough"); };
+  o.pace = [](double, const auto&) -> ScanClock::time_point { throw std::domain_error("enough"); };
   EXPECT_THROW(streamPoles(bench.path, o, [](const ReadScan&) {}), std::domain_error);
+}
+
+/// \return Whether the failure of the first scan ends the work before the waits do, 60 s later.
+bool endsSoon(const std::string& rawlog, const SequenceOptions& options) {
+  const auto begin = ScanClock::now();
+  EXPECT_THROW(streamPoles(rawlog, options, [](const ReadScan&) { throw Error("enough"); }), Error);
+  return ScanClock::now() - begin < std::chrono::seconds(30);
+}
+
+TEST_F(PoleSequenceTest, AFailureEndsTheWaits) {
+  bench.read(frame(poles(1)) + action({1, 0, 0}) + frame(poles(2)));
+  auto paced = options();
+  paced.pace = [](double time, const auto& goesOn) {
+    const auto end = ScanClock::now() + std::chrono::seconds(time > 1.5 ? 60 : 0);
+    while (goesOn() && ScanClock::now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return ScanClock::now();
+  };
+  EXPECT_TRUE(endsSoon(bench.path, paced));
+  auto followed = options();
+  followed.follow = 60;
+  EXPECT_TRUE(endsSoon(bench.path, followed));
 }
 
 // The first error of the file is reported, after the scans before it, with any number of threads.

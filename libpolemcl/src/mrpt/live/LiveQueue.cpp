@@ -39,35 +39,38 @@ double SteadyTimes::offset(const std::string& sensor) const {
 
 LiveQueue::LiveQueue(LiveQueueOptions options) : m_options(std::move(options)) {}
 
-/// The time of the observation, which it has then; a step back of its clock is told.
-double LiveQueue::steadyTime(CObservation& observation) {
+/// The time of the observation, which it has then. \param warning Of a step back of its clock.
+double LiveQueue::steadyTime(CObservation& observation, std::string& warning) {
   const std::string& sensor = observation.sensorLabel;
   const double before = m_times.offset(sensor);
   const double stated = mrpt::Clock::toDouble(observation.timestamp);
   const double time = m_times.of(sensor, stated, Clock::now());
   const double offset = m_times.offset(sensor);
   if (offset != 0) observation.timestamp = mrpt::Clock::fromDouble(time);
-  if (offset != before && m_options.warn)
-    m_options.warn("the clock of " + sensor + " was set back by " + io::fixed(offset - before, 1) +
-                   " s: its times go on without that step");
+  if (offset != before)
+    warning = "the clock of " + sensor + " was set back by " + io::fixed(offset - before, 1) +
+              " s: its times go on without that step";
   return time;
 }
 
 void LiveQueue::push(const CObservation::Ptr& observation) {
+  std::string warning;
   {
     const std::lock_guard lock(m_mutex);
     if (m_ended) return;
-    const double time = steadyTime(*observation);
+    const double time = steadyTime(*observation, warning);
     if (isScan(*observation)) {
       pushScan({time, Clock::now(), observation});
     } else if (dynamic_cast<const mrpt::obs::CObservationOdometry*>(observation.get())) {
       m_odometry.push_back(observation);
+      if (m_odometry.size() > kMostReadings) m_odometry.pop_front();
       if (!m_reached) m_odometryLabel = observation->sensorLabel;  // only the first is used
       if (observation->sensorLabel == m_odometryLabel)
         m_reached = std::max(m_reached.value_or(time), time);
     }
   }
   m_changed.notify_one();
+  if (!warning.empty() && m_options.warn) m_options.warn(warning);
 }
 
 /// Whether scans of this sensor are used; otherwise the drive ends and the failure says why.
@@ -109,6 +112,16 @@ void LiveQueue::end(const std::string& failure) {
   {
     const std::lock_guard lock(m_mutex);
     if (!m_ended) endNow(failure);
+  }
+  m_changed.notify_one();
+}
+
+void LiveQueue::stop() {
+  {
+    const std::lock_guard lock(m_mutex);
+    m_ended = true;
+    m_scans.clear();
+    m_odometry.clear();
   }
   m_changed.notify_one();
 }

@@ -54,10 +54,12 @@ class SteadyTimes {
 };
 
 /// \brief Scans in the order of their times, each after the odometry of its time. Odometry is given
-/// as it comes and is never dropped, so no motion is lost with a scan. Other observations are not
-/// used.
+/// as it comes, so no motion is lost with a scan; only of more than `kMostReadings` that wait the
+/// oldest are dropped. Other observations are not used.
 class LiveQueue : public EntrySource {
  public:
+  static constexpr std::size_t kMostReadings = 100'000;  ///< a quarter of an hour at 100 Hz
+
   explicit LiveQueue(LiveQueueOptions options = {});
 
   /// \brief From any thread. A scan older than the last one of its LiDAR that was taken is dropped.
@@ -71,6 +73,7 @@ class LiveQueue : public EntrySource {
 
   /// \brief Waits for the next observation. \return false when the drive has ended.
   bool next(RawlogEntry& entry) override;
+  void stop() override;
   bool isLive() const override { return true; }
   const std::string& comment() const override { return m_comment; }
   std::size_t dropped() const override;
@@ -82,7 +85,7 @@ class LiveQueue : public EntrySource {
     Clock::time_point arrival;
     mrpt::obs::CObservation::Ptr observation;
   };
-  double steadyTime(mrpt::obs::CObservation& observation);
+  double steadyTime(mrpt::obs::CObservation& observation, std::string& warning);
   void pushScan(Waiting scan);
   bool isExpected(const std::string& label);
   void endNow(const std::string& failure);

@@ -23,6 +23,7 @@ class RecordedEntries : public EntrySource {
     if (entry.observation) m_writer.write(*entry.observation);
     return true;
   }
+  void stop() override { m_source->stop(); }
   bool isLive() const override { return m_source->isLive(); }
   const std::string& comment() const override { return m_source->comment(); }
   std::size_t dropped() const override { return m_source->dropped(); }

@@ -93,11 +93,11 @@ void SensorThread::work(const SensorEvents& events) {
   using Clock = std::chrono::steady_clock;
   const auto period = std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(1 / m_sensor->getProcessRate()));
-  if (m_receiver && m_receiver->source().isOfThisComputerOnly())
-    events.warned(
-        m_place + m_driver +
-        ": listens to this computer only; for a LiDAR in the network set address = 0.0.0.0");
   try {
+    if (m_receiver && m_receiver->source().isOfThisComputerOnly())
+      events.warned(
+          m_place + m_driver +
+          ": listens to this computer only; for a LiDAR in the network set address = 0.0.0.0");
     for (auto next = Clock::now(); waitUntil(next); next = std::max(next + period, Clock::now()))
       if (!process(events)) return events.ended("");
   } catch (const std::exception& error) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <mutex>
 
 #include <polemcl/core/common/Types.h>
 
@@ -95,6 +96,8 @@ void VelodyneReceiver::takePosition(const Scan::TVelodynePositionPacket& packet,
   const std::chrono::duration<double> period(m_pos_packets_min_period);
   if (m_position && arrival - *m_position < period) return;
   m_position = arrival;
+  static std::mutex ofParser;  // MRPT's keeps the last date for all receivers
+  const std::lock_guard lock(ofParser);
   const char* const text = packet.NMEA_GPRMC;
   mrpt::obs::CObservationGPS fix;
   using Rmc = mrpt::obs::gnss::Message_NMEA_RMC;

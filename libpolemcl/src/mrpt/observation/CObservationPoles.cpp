@@ -42,6 +42,7 @@ void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
   in >> timestamp;
   sensorLabel = readText(in, io::kMostOfAScan, "sensor label");
   in >> sensorPose >> points;
+  sensorPose.yaw();  // MRPT computes it late, which two threads must not do
   poles.clear();
   // One by one: a count in a damaged file must not decide how much memory is allocated.
   for (std::uint32_t left = readCount(in, io::kMostOfAScan, "poles"); left > 0; --left)
@@ -67,6 +68,7 @@ std::vector<PoleDetection> CObservationPoles::polesInRobotFrame() const {
 
 void CObservationPoles::setSensorPose(const mrpt::poses::CPose3D& newSensorPose) {
   sensorPose = newSensorPose;
+  sensorPose.yaw();
 }
 
 void CObservationPoles::getDescriptionAsText(std::ostream& o) const {

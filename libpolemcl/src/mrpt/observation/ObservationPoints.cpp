@@ -10,6 +10,7 @@
 #include <mrpt/obs/VelodyneCalibration.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -145,6 +146,15 @@ int usedColumns(const CObservationRotatingScan& scan) {
   return narrow;
 }
 
+/// Lasers of a VLP-16 or an HDL-32E. MRPT loads them when they are asked for, which two threads
+/// must not do at once.
+const std::vector<VelodyneCalibration::PerLaserCalib>& lasersOf(bool isVlp16) {
+  static const std::array<VelodyneCalibration, 2> known{
+      VelodyneCalibration::LoadDefaultCalibration("HDL32"),
+      VelodyneCalibration::LoadDefaultCalibration("VLP16")};
+  return known[isVlp16 ? 1 : 0].laser_corrections;
+}
+
 /// Whether MRPT made the scan from a Velodyne scan. Rings are then in firing order, and azimuth is
 /// clockwise as on the device.
 bool isVelodyne(const CObservationRotatingScan& scan) {
@@ -225,9 +235,7 @@ std::vector<double> ObservationPoints::rowElevations(const CObservationRotatingS
                 " beams; set the model, or model = table with elevations_deg in the order of the "
                 "rows");
   if (!isVelodyne(scan) || upright.model == "table") return elevations;
-  const auto& lasers =
-      VelodyneCalibration::LoadDefaultCalibration(scan.lidarModel == "VLP-16" ? "VLP16" : "HDL32")
-          .laser_corrections;
+  const auto& lasers = lasersOf(scan.lidarModel == "VLP-16");
   if (lasers.size() != elevations.size())
     throw Error("a rotating scan names the model " + scan.lidarModel + " but has " +
                 std::to_string(rows) + " rows");

@@ -30,6 +30,8 @@ class EntrySource {
   /// \brief The next entry; waits for it. \return false at the end. \throws Error when it cannot
   /// be had.
   virtual bool next(RawlogEntry& entry) = 0;
+  /// \brief Ends a wait of next(), also of later ones: nobody uses the entries. From any thread.
+  virtual void stop() {}
   /// \brief Entries come at the moment they are measured. The odometry of a scan comes before the
   /// scan, or it is missing: nobody needs to wait for later entries.
   virtual bool isLive() const { return false; }

@@ -69,7 +69,7 @@ int GzReadStream::readPiece(int& code) {
     const int got = gzread(m_file, m_buffer.data(), static_cast<unsigned>(m_buffer.size()));
     gzerror(m_file, &code);
     const bool atEnd = got <= 0 && (code == Z_OK || code == Z_BUF_ERROR);
-    if (!atEnd || std::chrono::steady_clock::now() >= end) return got;
+    if (!atEnd || m_isStopped || std::chrono::steady_clock::now() >= end) return got;
     gzclearerr(m_file);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }

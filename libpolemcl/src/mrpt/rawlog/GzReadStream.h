@@ -5,6 +5,7 @@
 
 #include <mrpt/io/CStream.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -32,6 +33,8 @@ class GzReadStream : public mrpt::io::CStream {
   /// \brief True when no byte is left and the file ended regularly.
   /// \throws Error when it cannot be read. Damaged gzip data set cutShort() and give false.
   bool atCleanEnd();
+  /// \brief The end is not waited at any more. From any thread.
+  void stop() { m_isStopped = true; }
   /// \brief True after a read beyond the end, a count of points that the rest cannot hold, or
   /// damaged gzip data.
   bool cutShort() const { return m_cutShort; }
@@ -58,6 +61,7 @@ class GzReadStream : public mrpt::io::CStream {
   PointCountGuard m_points;
   std::uint64_t m_position = 0, m_fileSize = 0;
   bool m_cutShort = false, m_endsEarly = false;
+  std::atomic<bool> m_isStopped{false};
 };
 
 }  // namespace polemcl

@@ -60,7 +60,7 @@ class Stream {
   void countLidars(const Task& task);
 
   std::string m_name;
-  std::function<ScanClock::time_point(double)> m_pace;
+  decltype(SequenceOptions::pace) m_pace;
   ScanSource& m_source;
   std::function<Velocity(double)> m_velocity;
   tbb::enumerable_thread_specific<Extractors> m_extractions;  ///< one for each LiDAR
@@ -87,7 +87,10 @@ TaskPtr Stream::read() {
     task->result.readSeconds = secondsSince(arrival ? *arrival : begin);
     task->result.dropped = task->scan.dropped;
     task->result.odometryJumps = m_source.odometryJumps();
-    task->result.arrival = arrival ? *arrival : m_pace ? m_pace(task->scan.time) : ScanClock::now();
+    const auto due = [&](double time) {
+      return m_pace ? m_pace(time, [this] { return !m_failed; }) : ScanClock::now();
+    };
+    task->result.arrival = arrival ? *arrival : due(task->scan.time);
   } catch (...) {
     m_ended = true;
     task->error = std::current_exception();
@@ -161,12 +164,13 @@ void Stream::collect(Task& task, const std::function<void(const ReadScan&)>& con
   if (m_failed) return;
   try {
     if (task.error) std::rethrow_exception(task.error);
+    consume(task.result);
     count(task.result);
     if (task.scan.isFused) countLidars(task);
-    consume(task.result);
   } catch (...) {
     m_failure = std::current_exception();
     m_failed = true;
+    m_source.stop();
   }
 }
 

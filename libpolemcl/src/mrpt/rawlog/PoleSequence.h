@@ -31,9 +31,9 @@ struct SequenceOptions {
   double follow = 0;  ///< s; reading ends when a rawlog has not grown for this time
   int threads = 0;    ///< extracting, at most one per core; 0: that many. The result is the same
   /// Sets the pace of the input. Called in order with the time (s) of each scan that has been read,
-  /// from one thread at a time; may wait. Returns the moment at which the scan counts as there.
-  /// Empty: no scan waits.
-  std::function<ScanClock::time_point(double)> pace = {};
+  /// from one thread at a time; may wait while `goesOn` gives true. Returns the moment at which the
+  /// scan counts as there. Empty: no scan waits.
+  std::function<ScanClock::time_point(double, const std::function<bool()>& goesOn)> pace = {};
   /// Several LiDARs; with none, `extraction` holds for the one that is used.
   VehicleOptions vehicle = {};
   /// Velocity of the robot at a time (s), where it is known better than from the odometry; may be

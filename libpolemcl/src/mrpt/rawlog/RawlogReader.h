@@ -26,6 +26,7 @@ class RawlogReader : public EntrySource {
   ///         on a file that is empty or ends inside an object (with the byte; unless allowed). A
   ///         plain file cut between two objects cannot be distinguished from a complete one.
   bool next(RawlogEntry& entry) override;
+  void stop() override { m_stream.stop(); }
   /// \brief Text of the comments read so far; those of RawlogWriter and of RawlogViewer come first.
   const std::string& comment() const override { return m_comment; }
   /// \brief True when the file is truncated and this was allowed.

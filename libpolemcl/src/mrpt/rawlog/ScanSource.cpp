@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <mutex>
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
@@ -87,6 +88,14 @@ std::string sensorOf(const CObservation& observation) {
   return std::string(observation.GetRuntimeClass()->className) + " " + observation.sensorLabel;
 }
 
+/// MRPT has one such folder, which other threads may read: it is only set where it changes.
+void setFolderOfClouds(const std::filesystem::path& folder) {
+  static std::mutex ofFolder;
+  const std::lock_guard lock(ofFolder);
+  if (mrpt::io::getLazyLoadPathBase() != folder.string())
+    mrpt::io::setLazyLoadPathBase(folder.string());
+}
+
 }  // namespace
 
 bool isScan(const CObservation& observation) {
@@ -114,8 +123,7 @@ ScanSource::ScanSource(const std::string& path, const MotionOptions& motion, boo
   const std::filesystem::path file = std::filesystem::absolute(path);
   const std::filesystem::path images = file.parent_path() / (file.stem().string() + "_Images");
   std::error_code none;
-  mrpt::io::setLazyLoadPathBase(
-      (std::filesystem::is_directory(images, none) ? images : file.parent_path()).string());
+  setFolderOfClouds(std::filesystem::is_directory(images, none) ? images : file.parent_path());
 }
 
 ScanSource::ScanSource(std::shared_ptr<EntrySource> entries, std::string name,

@@ -58,6 +58,9 @@ class ScanSource {
   /// sensors, or a rawlog has no scan of a LiDAR of the vehicle.
   std::optional<Scan> next();
 
+  /// \brief As EntrySource::stop().
+  void stop() { m_entries->stop(); }
+
   /// \brief Measuring times of the scans, if the comment of the rawlog states them.
   const ScanTiming& timing() const { return m_timing; }
   std::size_t otherSensors() const { return m_otherSensors; }

@@ -11,9 +11,10 @@ constexpr double kPostDepth = 0.4;  // depth of posts below ground, so that slop
 /// \brief A straight axis with a random tilt: point at a height above ground.
 struct Axis {
   V lean;
-  Axis(double sigmaDeg, Random& random)
-      : lean(std::tan(sigmaDeg * M_PI / 180 * random.normal()),
-             std::tan(sigmaDeg * M_PI / 180 * random.normal()), 1) {}
+  Axis(double sigmaDeg, Random& random) {
+    const double y = random.normal(), x = random.normal();
+    lean = V(std::tan(sigmaDeg * M_PI / 180 * x), std::tan(sigmaDeg * M_PI / 180 * y), 1);
+  }
   V at(double height) const { return lean * height; }
 };
 
@@ -64,8 +65,10 @@ Piece makeLampPost(const Site& site, std::uint32_t id, const LampStyle& style, R
   } else {
     builder.ellipsoid(axis.at(height + 0.15), V(0.22, 0.22, 0.2), materials::kPlastic);
   }
-  if (random.chance(0.25))
-    addPlate(builder, axis, random.uniform(2.1, 2.9), style.baseRadius, random.chance(0.8), random);
+  if (random.chance(0.25)) {
+    const bool isRound = random.chance(0.8);
+    addPlate(builder, axis, random.uniform(2.1, 2.9), style.baseRadius, isRound, random);
+  }
   if (random.chance(0.08))
     builder.box(axis.at(1.0) + V(0, style.baseRadius + 0.17, 0), V(0.18, 0.15, 0.3),
                 materials::kPlastic);
@@ -129,8 +132,8 @@ WorldObject makeBin(const Site& site, std::uint32_t id, Random& random) {
 
 WorldObject makeBillboard(const Site& site, std::uint32_t id, Random& random) {
   ObjectBuilder builder(Kind::billboard, site);
-  const double half = random.uniform(0.6, 1.9),
-               yaw = random.normal(0, 0.2) + (random.chance(0.5) ? M_PI / 2 : 0);
+  const double half = random.uniform(0.6, 1.9), aside = random.normal(0, 0.2),
+               yaw = aside + (random.chance(0.5) ? M_PI / 2 : 0);
   const double foot = random.uniform(0.3, 0.7), height = random.uniform(2.0, 3.2);
   builder.box(V(0, 0, 0.5 * (foot + height)), V(half, 0.06, 0.5 * (height - foot)),
               materials::kPlaster, yaw);
@@ -144,8 +147,8 @@ WorldObject makeBillboard(const Site& site, std::uint32_t id, Random& random) {
 WorldObject makeCabinet(const Site& site, std::uint32_t id, Random& random) {
   ObjectBuilder builder(Kind::cabinet, site);
   const double height = random.uniform(0.4, 0.75);
-  builder.box(V(0, 0, height - 0.1), V(random.uniform(0.25, 0.7), 0.17, height + 0.1),
-              materials::kPlastic, random.normal(0, 0.05));
+  const double yaw = random.normal(0, 0.05), half = random.uniform(0.25, 0.7);
+  builder.box(V(0, 0, height - 0.1), V(half, 0.17, height + 0.1), materials::kPlastic, yaw);
   return builder.build(id);
 }
 

@@ -126,7 +126,8 @@ void addBox(Piece& piece, const Site& site, Random& random) {
   Site turned = atPole(piece, site);
   turned.heading = random.uniform(-M_PI, M_PI);
   ObjectBuilder builder(piece.object.kind, turned);
-  const V half(random.uniform(0.1, 0.25), random.uniform(0.06, 0.15), random.uniform(0.15, 0.4));
+  const double tall = random.uniform(0.15, 0.4), deep = random.uniform(0.06, 0.15);
+  const V half(random.uniform(0.1, 0.25), deep, tall);
   builder.box(V(0, piece.pole->radius + half.y(), random.uniform(0.7, 2.2)), half,
               materials::kPlastic);
   attach(piece, builder.build(0));

@@ -33,7 +33,8 @@ void StreetLayout::parkedVehicles(int side) {
     if (!m_street.fresh(s) || nearCrossing(1, s, 6) || nearCrossing(-1, s, 6)) continue;
     Site place = site(side, s, m_options.roadWidth / 2 - 1.05 + own.normal(0, 0.08));
     if (!claim(place, 2.2, Ground::road)) continue;
-    place.heading += (own.chance(0.9) ? M_PI : 0.0) + own.normal(0, 0.02);
+    const double turned = own.chance(0.9) ? M_PI : 0.0;
+    place.heading += turned + own.normal(0, 0.02);
     add(makeVehicle(place, id, own));
   }
 }
@@ -47,7 +48,8 @@ void StreetLayout::vehiclesInYards() {
       Random own(random.next());
       Site place = site(yard.side, yard.s + along, yard.border + own.uniform(2.9, 3.5));
       if (!own.chance(0.6 * m_options.parkedShare) || !claim(place, 1.4, Ground::lot)) continue;
-      place.heading += (own.chance(0.5) ? M_PI / 2 : -M_PI / 2) + own.normal(0, 0.03);
+      const double turned = own.chance(0.5) ? M_PI / 2 : -M_PI / 2;
+      place.heading += turned + own.normal(0, 0.03);
       add(makeVehicle(place, id, own));
     }
   }

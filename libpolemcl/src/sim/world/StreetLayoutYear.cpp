@@ -70,7 +70,8 @@ void StreetLayout::settle(const Planned& old, bool beside) {
   for (int attempt = 0; attempt < 12; ++attempt) {
     Site place = old.place;
     if (beside && attempt < 8) {
-      const double along = (random.chance(0.5) ? 1 : -1) * random.uniform(1.5, 5);
+      const int way = random.chance(0.5) ? 1 : -1;
+      const double along = way * random.uniform(1.5, 5);
       place.base.x() += along * std::cos(place.heading);
       place.base.y() += along * std::sin(place.heading);
       place.base.z() = m_terrain.height(place.base.x(), place.base.y());

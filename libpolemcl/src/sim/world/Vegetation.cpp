@@ -28,8 +28,8 @@ Piece makeTree(const Site& site, std::uint32_t id, const TreeStyle& style, doubl
   const double levels[] = {0.25, 1.0, 1.9, crownBase, trunkTop};
   double truthRadius = radius;
   for (const double level : levels) {
-    const V next(leanX * level + random.normal(0, 0.012), leanY * level + random.normal(0, 0.012),
-                 level);
+    const double y = leanY * level + random.normal(0, 0.012);
+    const V next(leanX * level + random.normal(0, 0.012), y, level);
     const double nextWidth = radius * (1.05 - 0.35 * level / trunkTop) * random.uniform(0.96, 1.04);
     builder.post(place, next, width, nextWidth, materials::kBark);
     if (place.z() < kTruthHeight && level >= kTruthHeight) {
@@ -70,11 +70,11 @@ WorldObject makeBush(const Site& site, std::uint32_t id, double foliage, Random&
   const double size = random.uniform(0.3, 1.1);
   const int blobs = 2 + random.below(3);
   for (int i = 0; i < blobs; ++i) {
-    const V half(size * random.uniform(0.6, 1.1), size * random.uniform(0.6, 1.1),
-                 size * random.uniform(0.6, 1.2));
-    builder.ellipsoid(V(random.normal(0, 0.4) * size, random.normal(0, 0.4) * size, half.z() * 0.8),
-                      half, materials::kLeaves,
-                      std::max(0.06, 0.8 * foliage * random.uniform(0.15, 0.4)));
+    const double tall = size * random.uniform(0.6, 1.2), deep = size * random.uniform(0.6, 1.1);
+    const V half(size * random.uniform(0.6, 1.1), deep, tall);
+    const double opaque = std::max(0.06, 0.8 * foliage * random.uniform(0.15, 0.4));
+    const double y = random.normal(0, 0.4) * size, x = random.normal(0, 0.4) * size;
+    builder.ellipsoid(V(x, y, half.z() * 0.8), half, materials::kLeaves, opaque);
   }
   return builder.build(id);
 }
@@ -86,9 +86,10 @@ WorldObject makeHedge(const Site& site, std::uint32_t id, double length, double 
   for (double x = -length / 2; x < length / 2 - 0.5;) {
     const double piece = std::min(random.uniform(1.5, 4), length / 2 - x);
     const double tall = height * random.uniform(0.9, 1.1);
+    const double opaque = std::max(0.15, foliage * random.uniform(0.35, 0.6));
+    const double deep = half * random.uniform(0.9, 1.1);
     builder.thicket(V(x + piece / 2, random.normal(0, 0.04), tall - 0.1),
-                    V(piece / 2, half * random.uniform(0.9, 1.1), tall + 0.1), materials::kLeaves,
-                    std::max(0.15, foliage * random.uniform(0.35, 0.6)));
+                    V(piece / 2, deep, tall + 0.1), materials::kLeaves, opaque);
     x += piece;
   }
   return builder.build(id);
