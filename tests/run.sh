@@ -15,6 +15,7 @@
 #   site      the documentation site
 #   clang     a build with clang
 #   sanitize  the tests under the address and undefined-behaviour sanitizers
+#   threads   tests with threads of their own under the thread sanitizer
 #   valgrind  the examples of --help under Valgrind
 #   fuzz      arbitrary bytes for every reader, ten seconds each
 #   faults    kills, power cuts, full disks and the like for every command that writes
@@ -25,7 +26,7 @@ set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
 
 usage() {
-  sed -n '2,23s/^# //p' "$0"
+  sed -n '2,24s/^# //p' "$0"
   exit "$1"
 }
 
@@ -67,9 +68,15 @@ sanitize() {
     run_tests "$top/build-sanitize"
 }
 
+threads() {
+  build threads
+  TSAN_OPTIONS="suppressions=$top/tests/sanitize/threads.txt" run_tests "$top/build-threads" \
+    --tests-regex "^($(paste -sd '|' "$top/tests/sanitize/threaded.txt"))(\.|$)"
+}
+
 run_step() {
   case $1 in
-    lint | unit | sanitize) "$1" ;;
+    lint | unit | sanitize | threads) "$1" ;;
     test) all_tests ;;
     tidy) "$top/tests/lint.sh" tidy ;;
     golden | mutation | viewers | slurm | site | valgrind | fuzz | faults | long) "$top/tests/$1/run.sh" ;;
@@ -85,14 +92,14 @@ run_step() {
 case "$#:${1-}" in
   0:) set -- test ;;
   1:--quick) set -- unit ;;
-  1:--full) set -- lint test tidy golden mutation viewers slurm debian site clang sanitize valgrind fuzz faults long coverage ;;
+  1:--full) set -- lint test tidy golden mutation viewers slurm debian site clang sanitize threads valgrind fuzz faults long coverage ;;
   1:-h | 1:--help) usage 0 ;;
 esac
 packages=
 for step in "$@"; do
   case $step in
     unit | test | golden | faults | long) ;;
-    lint | tidy | mutation | viewers | slurm | debian | site | clang | sanitize | valgrind | fuzz | coverage) packages=full ;;
+    lint | tidy | mutation | viewers | slurm | debian | site | clang | sanitize | threads | valgrind | fuzz | coverage) packages=full ;;
     *) usage 2 >&2 ;;
   esac
 done

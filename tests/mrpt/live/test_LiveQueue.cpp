@@ -343,7 +343,9 @@ TEST(LiveQueue, AFailureEndsTheWaitForTheNextScan) {
   }
   const auto counts =
       streamPoles(queue, "sensors.ini", tests::sequence::options(), [](const ReadScan& taken) {
-        if (taken.index == 1) throw Error("enough");
+        if (taken.index < 1) return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the next read waits by then
+        throw Error("enough");
       });
   EXPECT_EQ(counts.failure, "enough");
   EXPECT_FALSE(isLate);

@@ -347,7 +347,11 @@ TEST_F(PoleSequenceTest, ThePaceSeesEachScanInOrderBeforeItIsConsumed) {
 /// \return Whether the failure of the first scan ends the work before the waits do, 60 s later.
 bool endsSoon(const std::string& rawlog, const SequenceOptions& options) {
   const auto begin = ScanClock::now();
-  EXPECT_THROW(streamPoles(rawlog, options, [](const ReadScan&) { throw Error("enough"); }), Error);
+  const auto fail = [](const ReadScan&) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the next read waits by then
+    throw Error("enough");
+  };
+  EXPECT_THROW(streamPoles(rawlog, options, fail), Error);
   return ScanClock::now() - begin < std::chrono::seconds(30);
 }
 
