@@ -90,6 +90,21 @@ std::optional<double> rateOf(const LocalizeJob& job, const AllSettings& settings
   return job.rate || settings.view.live ? report::parseRate(settings.view.rate) : std::nullopt;
 }
 
+/// What ends a drive from sensors from outside. From any thread.
+class DriveEnd {
+ public:
+  /// \param seconds After its construction; 0: never.
+  explicit DriveEnd(double seconds) : m_seconds(seconds) {}
+  bool isReached() const {
+    return EndSignals::came() || (m_seconds > 0 && secondsSince(m_begin) >= m_seconds);
+  }
+
+ private:
+  const EndSignals m_signals;
+  const double m_seconds;
+  const ScanClock::time_point m_begin = ScanClock::now();
+};
+
 /// Streams the rawlog, or the sensors, to the player. A rawlog has no failure. A drive ends when
 /// its stream does; a rawlog is read to its end.
 LiveDriveResult play(const LocalizeJob& job, const AllSettings& settings, const RunView& view,
@@ -133,6 +148,16 @@ void writeResults(RunFolder& folder, const LocalizeFacts& facts, const AllSettin
   writeJson(folder.staged("timings.json"), timingsJson(result.timings));
   writeJson(folder.staged("summary.json"), makeSummary(facts, result));
   folder.commit();
+}
+
+void warnOfLeftovers(const RunFolder& folder) {
+  for (const std::filesystem::path& left : folder.leftovers())
+    std::cerr << warningLine(
+                     "pole-localize",
+                     left.string() +
+                         ": is left of a run that was killed, its results up to then are in "
+                         "it; remove it when you do not need them")
+              << '\n';
 }
 
 void warnOfErrors(const SpreadCheck& check, const std::filesystem::path& truth) {
@@ -186,13 +211,7 @@ LocalizeResult localize(const LocalizeJob& job) {
   RunFolder folder(job.output);
   for (const auto& input : {job.config, job.source(), job.map, job.truth.value_or("")})
     folder.protect(input);
-  for (const std::filesystem::path& left : folder.leftovers())
-    std::cerr << warningLine(
-                     "pole-localize",
-                     left.string() +
-                         ": is left of a run that was killed, its results up to then are in "
-                         "it; remove it when you do not need them")
-              << '\n';
+  warnOfLeftovers(folder);
   using Source = report::Playback::Source;
   RunView view(settings.view,
                {map->poles(), job.source().filename().string(), job.truth ? &truth : nullptr,
@@ -202,13 +221,10 @@ LocalizeResult localize(const LocalizeJob& job) {
   const LocalizationMap prepared(map);
   const auto begin = ScanClock::now();
   std::optional<PoseStream> stream;
-  std::optional<EndSignals> signals;
-  const auto goesOn = [&] {
-    return !(signals && EndSignals::came()) &&
-           !(job.seconds > 0 && secondsSince(begin) >= job.seconds);
-  };
+  std::optional<DriveEnd> end;
+  const auto goesOn = [&end] { return !end || !end->isReached(); };
   if (job.stream) stream.emplace(*job.stream, goesOn);
-  if (job.isLive()) signals.emplace();
+  if (job.isLive()) end.emplace(job.seconds);
   std::optional<RunBag> bag;
   if (job.bag) bag.emplace(*job.bag);
   LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view,
@@ -223,7 +239,7 @@ LocalizeResult localize(const LocalizeJob& job) {
   result.timings.rate = rateOf(job, settings);
   if (bag) bag->commit();
   writeResults(folder, facts, settings, result);
-  signals.reset();
+  end.reset();
   if (!job.quiet) {
     std::ostream& out = job.stream == "-" ? std::cerr : std::cout;
     printTable(out, facts, result);
