@@ -185,9 +185,9 @@ class PoleCity {
     if (i + 1 >= road.size()) return;
     const Eigen::Vector2d ahead = (road[i + 1] - road[i]).normalized();
     const Eigen::Vector2d left(-ahead.y(), ahead.x());
+    const double farther = along - static_cast<double>(i) + jitter * m_random.normal();
     const double aside = beside + jitter * m_random.normal();
-    const Eigen::Vector2d place = road[i] + (along - static_cast<double>(i)) * ahead +
-                                  aside * left + jitter * m_random.normal() * ahead;
+    const Eigen::Vector2d place = road[i] + farther * ahead + aside * left;
     const auto near = [&](const Eigen::Vector2d& p) { return (p - place).squaredNorm() < 4; };
     if (std::none_of(list.begin(), list.end(), near)) list.push_back(place);
   }

@@ -55,8 +55,8 @@ void placeAtSite(const BuildingSite& site, const DetectionModel& model, int copy
   const Eigen::Vector2d toRoad = site.side * Eigen::Vector2d(along.y(), -along.x());
   const int count = poisson(model.season.siteClutter * (site.to - site.from), random);
   for (int i = 0; i < count; ++i) {
-    const int at = random.below(static_cast<int>(site.kerb.size()));
-    const Eigen::Vector2d place = site.kerb[at] + random.uniform(0.03, 0.2) * toRoad;
+    const Eigen::Vector2d out = random.uniform(0.03, 0.2) * toRoad;
+    const Eigen::Vector2d place = site.kerb[random.below(static_cast<int>(site.kerb.size()))] + out;
     objects.push_back({hash(seed, i), place.x(), place.y(), false});
   }
 }
