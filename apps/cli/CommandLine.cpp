@@ -72,6 +72,11 @@ std::string problemOf(const CLI::App& cli, const CLI::ParseError& error) {
   return "a subcommand is needed: " + CLI::detail::join(names, ", ");
 }
 
+/// Results that are printed into a file need the disk as well.
+void requirePrinted() {
+  if (!std::cout.flush()) throw Error("cannot write to standard output: is the disk full?");
+}
+
 }  // namespace
 
 CommandLine::CommandLine(const std::string& program, const std::string& description, Guides guides)
@@ -112,8 +117,7 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
       return usageError(problemOf(m_cli, e));
-    m_cli.exit(e);  // prints what --help or --version ask for
-    return exitDone;
+    return this->work([&] { m_cli.exit(e); });  // prints what --help or --version ask for
   }
   return this->work([&] {
     requireInputsKept(m_cli);
@@ -134,6 +138,7 @@ int CommandLine::work(const std::function<void()>& work) const {
                                       tbb::global_control::max_allowed_parallelism)));
   try {
     work();
+    requirePrinted();
     sayDetail("took " + resourcesTaken(secondsSince(begin)));
     return exitDone;
   } catch (const std::exception& e) {

@@ -8,6 +8,8 @@
 #include "eval/EvalApp.h"
 #include "eval/Figures.h"
 #include "io/file/ErrorPlace.h"
+#include "io/map/Datum.h"
+#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 
 namespace polemcl::apps {
@@ -25,7 +27,15 @@ std::vector<Eigen::Vector2d> readPoles(const std::filesystem::path& file) {
   return poles;
 }
 
+/// The info of a `.polemap`; other formats have none.
+std::pair<std::string, std::map<std::string, std::string>> factsOf(
+    const std::filesystem::path& file) {
+  if (file.extension() != ".polemap") return {file.string(), {}};
+  return {file.string(), io::readPoleMap(file).info};
+}
+
 Figures mapFigures(const MapOptions& options) {
+  io::requireSameDatum(factsOf(options.truth), factsOf(options.map));
   const auto truth = readPoles(options.truth), map = readPoles(options.map);
   const auto score =
       io::located(options.map.string() + " against " + options.truth.string() + ": ",

@@ -166,6 +166,9 @@ void printImport(const ImportReport& report, const ImportOptions& options) {
                                     "--odometry or --odometry-noise\n"
                                   : "odometry: none; good for mapping, by the poles alone; to "
                                     "localize, give --odometry\n");
+  const auto old = std::filesystem::path(options.output).replace_extension(".tum");
+  if (!report.hasTruth && std::filesystem::exists(old))
+    std::cout << "note: " << old.string() << " is of an earlier import, not of this drive\n";
   for (const auto& note : report.notes) std::cout << "note: " << note << '\n';
 }
 

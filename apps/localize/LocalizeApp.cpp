@@ -128,8 +128,9 @@ LiveDriveResult play(const LocalizeJob& job, const AllSettings& settings, const 
     player.take(scan);
     if (job.isLive() && scan.index == 0)
       for (const std::string& text : turnWarnings(scan, options)) warn(text);
-    if (job.isLive() && scan.odometryJumps > jumps)
-      warn(job.source().string() + ": the odometry jumped: the motion before goes on instead");
+    if (job.isLive() && scan.odometryJumps > 0 && jumps == 0)
+      warn(job.source().string() +
+           ": the odometry jumped: the motion before goes on instead, as at later jumps");
     jumps = scan.odometryJumps;
     const std::lock_guard lock(ofProgress);
     progress.update(scan.index + 1, scan.expected);
@@ -148,6 +149,15 @@ void writeResults(RunFolder& folder, const LocalizeFacts& facts, const AllSettin
   writeJson(folder.staged("timings.json"), timingsJson(result.timings));
   writeJson(folder.staged("summary.json"), makeSummary(facts, result));
   folder.commit();
+}
+
+/// A bag that cannot be written is a failure, unless there is one already.
+void keep(RunBag& bag, std::string& failure) {
+  try {
+    bag.commit();
+  } catch (const Error& error) {
+    if (failure.empty()) failure = error.what();
+  }
 }
 
 void warnOfLeftovers(const RunFolder& folder) {
@@ -223,22 +233,26 @@ LocalizeResult localize(const LocalizeJob& job) {
   std::optional<PoseStream> stream;
   std::optional<DriveEnd> end;
   const auto goesOn = [&end] { return !end || !end->isReached(); };
-  if (job.stream) stream.emplace(*job.stream, goesOn);
   if (job.isLive()) end.emplace(job.seconds);
+  if (job.stream) stream.emplace(*job.stream, goesOn);
   std::optional<RunBag> bag;
   if (job.bag) bag.emplace(*job.bag);
   LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view,
                         stream ? &*stream : nullptr, bag ? &*bag : nullptr);
   const LiveDriveResult drive =
       play(job, settings, view, player, stream ? &*stream : nullptr, goesOn);
-  const std::string failure = drive.failure.empty() && stream ? stream->failure() : drive.failure;
+  std::string failure = drive.failure.empty() && stream ? stream->failure() : drive.failure;
   if (!failure.empty() && drive.counts.scans == 0) throw Error(failure);
   facts.counts = drive.counts;
+  const std::string useless = player.whyUseless();
+  // A drive cannot be repeated: what came of it is kept.
+  if (!useless.empty() && !(job.isLive() && drive.counts.scans > 0)) throw Error(useless);
+  if (failure.empty()) failure = useless;
   LocalizeResult result = player.finish();
   result.timings.wallSeconds = secondsSince(begin);
   result.timings.rate = rateOf(job, settings);
-  if (bag) bag->commit();
   writeResults(folder, facts, settings, result);
+  if (bag) keep(*bag, failure);
   end.reset();
   if (!job.quiet) {
     std::ostream& out = job.stream == "-" ? std::cerr : std::cout;

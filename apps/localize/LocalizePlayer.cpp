@@ -63,30 +63,30 @@ void LocalizePlayer::begin(const PoleScan& first) {
   for (std::size_t i = 0; i < m_runs->size(); ++i) m_files.emplace_back(m_folder, i, m_truth);
 }
 
-void LocalizePlayer::requireUsable() const {
+std::string LocalizePlayer::whyUseless() const {
   const std::string input = m_facts.job.source().string();
   const SequenceCounts& counts = m_facts.counts;
   const std::string scans = std::to_string(counts.scans);
   if (counts.scans == 0 && m_facts.job.isLive())
-    throw Error(input + ": no scan with odometry came (" + std::to_string(counts.unknownMotions) +
-                " without): check the drivers, their ports and the network");
+    return input + (counts.unknownMotions > 0
+                        ? ": none of " + std::to_string(counts.unknownMotions) +
+                              " scans has odometry of its time: check the odometry and the clocks"
+                        : ": no scan came: check the drivers, their ports and the network");
   if (counts.scans == 0)
-    throw Error(input + ": holds no scan and no poles; import or extract them first");
+    return input + ": holds no scan and no poles; import or extract them first";
   if (counts.emptyScans == counts.scans)
-    throw Error(input + ": no usable scan: none of " + scans + " has a valid point");
+    return input + ": no usable scan: none of " + scans + " has a valid point";
   if (counts.poles == 0)
-    throw Error(input + ": no pole in any of " + scans + " scans (" +
-                std::to_string(counts.points) + " valid points, " +
-                std::to_string(counts.emptyScans) +
-                " empty scans): check [sensor] and [extraction]");
+    return input + ": no pole in any of " + scans + " scans (" + std::to_string(counts.points) +
+           " valid points, " + std::to_string(counts.emptyScans) +
+           " empty scans): check [sensor] and [extraction]";
   if (m_truth && 2 * m_covered < counts.scans)
-    throw Error(m_facts.job.truth->string() + ": the truth covers " + std::to_string(m_covered) +
-                " of " + scans + " scans, at least half are needed: does it " +
-                "belong to this rawlog?");
+    return m_facts.job.truth->string() + ": the truth covers " + std::to_string(m_covered) +
+           " of " + scans + " scans, at least half are needed: does it " + "belong to this rawlog?";
+  return "";
 }
 
 LocalizeResult LocalizePlayer::finish() {
-  requireUsable();
   LocalizeResult result;
   for (RunFiles& files : m_files) {
     const auto errors = files.finish();

@@ -33,14 +33,14 @@ class LocalizePlayer {
   ///         RunFiles and RunView do.
   void take(const ReadScan& scan);
 
-  /// \brief After the last scan; `facts.counts` are known now. Completes the files.
-  /// \throws Error when nothing could be localized: no scan, no valid point, no pole in any scan;
-  ///         when the truth covers less than half of the scans.
+  /// \brief After the last scan; `facts.counts` are known now. Why the results say nothing: no
+  /// scan, no valid point, no pole in any scan, a truth of less than half of the scans; or empty.
+  std::string whyUseless() const;
+  /// \brief Completes the files. There must have been a scan.
   LocalizeResult finish();
 
  private:
   void begin(const PoleScan& first);
-  void requireUsable() const;
 
   LocalizeFacts& m_facts;
   const LocalizationMap& m_map;

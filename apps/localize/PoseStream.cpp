@@ -5,9 +5,13 @@
 #include <fcntl.h>
 #include <poll.h>
 
+#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <iostream>
+#include <thread>
 
+#include "cli/Messages.h"
 #include "localize/LocalizeReport.h"
 
 namespace polemcl::apps {
@@ -46,13 +50,32 @@ PoseStream::PoseStream(const std::filesystem::path& target, std::function<bool()
       m_last(lineOf(0, LocalizationUpdate(), 0)) {
   std::signal(SIGPIPE, SIG_IGN);
   if (target == "-") return;
-  m_descriptor = open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (m_descriptor < 0) throw Error(target.string() + ": cannot be created for --stream");
+  m_descriptor = opened();
   m_file = std::make_unique<__gnu_cxx::stdio_filebuf<char>>(m_descriptor, std::ios::out);
   m_out.rdbuf(m_file.get());
 }
 
 PoseStream::~PoseStream() = default;
+
+/// A FIFO cannot be opened before somebody reads it.
+int PoseStream::opened() const {
+  const std::string name = m_target.string();
+  const bool isPipe = std::filesystem::is_fifo(m_target);
+  constexpr int kSilent = 50;  // waits before it is told: a second
+  for (int waits = 0;; ++waits) {
+    const int descriptor =
+        open(name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
+    if (descriptor >= 0) {
+      fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+      return descriptor;
+    }
+    if (!isPipe || errno != ENXIO) throw Error(name + ": cannot be created for --stream");
+    if (m_goesOn && !m_goesOn()) throw Error(name + ": nobody reads it");
+    if (waits == kSilent)
+      std::cerr << warningLine("pole-localize", name + ": waits for a reader") << '\n';
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
 
 void PoseStream::add(std::size_t scan, const LocalizationUpdate& update, std::size_t dropped) {
   const std::lock_guard lock(m_mutex);

@@ -27,9 +27,10 @@ namespace polemcl::apps {
 /// From then on the program ignores SIGPIPE, also when it ends and the C library flushes.
 class PoseStream {
  public:
-  /// \param target A file, which is emptied first; "-": standard output.
+  /// \param target A file, which is emptied first, a FIFO, whose reader is waited for, or "-":
+  /// standard output.
   /// \param goesOn Asked while nobody reads; false ends the wait, and no more lines are written.
-  /// \throws Error when the file cannot be created.
+  /// \throws Error when the file cannot be created, or nobody reads the FIFO.
   explicit PoseStream(const std::filesystem::path& target, std::function<bool()> goesOn = {});
   ~PoseStream();
   void add(std::size_t scan, const LocalizationUpdate& update, std::size_t dropped);
@@ -41,6 +42,7 @@ class PoseStream {
 
  private:
   void write(const nlohmann::ordered_json& line);
+  int opened() const;
   bool waitForReader() const;
 
   const std::filesystem::path m_target;

@@ -70,10 +70,12 @@ RunFolder::~RunFolder() {
 }
 
 void RunFolder::protect(const fs::path& input) const {
+  if (input.empty()) return;
   std::error_code error;
-  if (!isReplaced(input) ||
-      !fs::equivalent(input.parent_path().empty() ? "." : input.parent_path(), m_folder, error))
-    return;
+  const auto isInHere = [&](const fs::path& file) {
+    return isReplaced(file) && fs::equivalent(file.parent_path(), m_folder, error);
+  };
+  if (!isInHere(fs::absolute(input)) && !isInHere(fs::weakly_canonical(input, error))) return;
   throw Error(input.string() + ": is an input, and the results in " + m_folder.string() +
               " would replace it; choose another folder for them");
 }

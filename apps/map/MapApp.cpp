@@ -24,7 +24,10 @@ struct MappingLine {
 void addDatumOption(CLI::App& cli, std::string& datum, const std::string& whose) {
   cli.add_option("--datum", datum,
                  "Origin of " + whose + " on Earth: LAT,LON, and the heading of x from east")
-      ->type_name("LAT,LON[,YAW_DEG]");
+      ->type_name("LAT,LON[,YAW_DEG]")
+      ->check([](const std::string& text) {
+        return text.empty() ? "LAT,LON[,YAW_DEG] expected, not ''" : std::string();
+      });
 }
 
 std::optional<io::Datum> datumOf(const std::string& text) {

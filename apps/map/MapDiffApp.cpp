@@ -30,24 +30,12 @@ void writeCsv(const MapDiff& diff, const std::filesystem::path& file) {
   output.commit();
 }
 
-/// Maps of different datums have different coordinates for the same place.
-void requireSameDatum(const io::PoleMapData& before, const io::PoleMapData& after,
-                      const MapDiffFiles& files) {
-  const std::string first = files.before.string() + ": ", second = files.after.string() + ": ";
-  const auto one = io::datumOf(before.info, first), other = io::datumOf(after.info, second);
-  if (one && other && !(*one == *other))
-    throw Error(
-        second + "its datum is " + io::datumText(*other) + ", but that of " +
-        files.before.string() + " is " + io::datumText(*one) +
-        "; maps are compared in one frame: pole-map convert writes one as GeoJSON, pole-map "
-        "import --datum brings that to the datum of the other");
-}
-
 }  // namespace
 
 MapDiff diffMapFiles(const MapDiffFiles& files, const MapDiffOptions& options) {
   const auto mapBefore = io::readPoleMap(files.before), mapAfter = io::readPoleMap(files.after);
-  requireSameDatum(mapBefore, mapAfter, files);
+  io::requireSameDatum({files.before.string(), mapBefore.info},
+                       {files.after.string(), mapAfter.info});
   MapDiff diff = diffMaps(mapBefore.poles, mapAfter.poles, options);
   const std::string before = files.before.filename().string(),
                     after = files.after.filename().string();

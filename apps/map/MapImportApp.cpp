@@ -19,8 +19,20 @@ namespace {
 
 constexpr double kConfidence = 0.9;  ///< inventories hold poles that are gone
 
+/// Options that the kind of inventory has no use for.
+void requireFitting(const MapImportOptions& options, const std::string& ending) {
+  const std::string file = options.input.string();
+  const MapImportOptions usual;
+  if (ending == ".csv") return;
+  if (!options.columns.empty() || options.separator != usual.separator)
+    throw Error(file + ": --columns and --separator are for CSV files");
+  if (ending != ".geojson" && ending != ".json" && options.coordinates != usual.coordinates)
+    throw Error(file + ": places of OpenStreetMap are in WGS 84; leave out --crs");
+}
+
 std::vector<InventoryEntry> readInventory(const MapImportOptions& options, std::size_t& left) {
   const std::string ending = options.input.extension().string();
+  requireFitting(options, ending);
   if (ending == ".csv") return readCsvInventory(options.input, options.columns, options.separator);
   if (ending == ".geojson" || ending == ".json") return readGeoJsonInventory(options.input, left);
   if (ending == ".osm" || ending == ".xml") return readOsmInventory(options.input);
@@ -71,6 +83,15 @@ std::string found(const std::vector<InventoryEntry>& entries,
                            : name + ": " + listed(values);
   }
   return text;
+}
+
+void requireRadii(const std::vector<InventoryEntry>& entries, const MapImportOptions& options) {
+  const std::string& name = options.radiusProperty;
+  if (name.empty() || std::any_of(entries.begin(), entries.end(), [&](const InventoryEntry& entry) {
+        return entry.properties.count(name) > 0;
+      }))
+    return;
+  throw Error(options.input.string() + ": --radius-property: " + found(entries, {name + "="}));
 }
 
 double radiusOf(const InventoryEntry& entry, const MapImportOptions& options) {
@@ -152,6 +173,7 @@ MapImportSummary importMap(const MapImportOptions& options) {
   MapImportSummary summary;
   std::vector<InventoryEntry> entries = readInventory(options, summary.others);
   if (entries.empty()) throw Error(options.input.string() + ": no pole in it");
+  requireRadii(entries, options);
   summary.found = found(entries, options.keep);
   const auto kept =
       std::remove_if(entries.begin(), entries.end(),

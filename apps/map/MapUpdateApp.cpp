@@ -69,6 +69,18 @@ void requireNearby(const std::vector<StampedPose2D>& path, const LandmarkMap& ma
               " (10 km are allowed): do they share a datum?");
 }
 
+/// \throws Error when the map keeps scans and would be replaced by one that has none.
+io::PoleMapData readMap(const MapUpdateJob& job) {
+  std::optional<AddedSessions> scans;
+  io::PoleMapData map = io::readPoleMap(job.map, &scans);
+  std::error_code none;
+  if (scans && std::filesystem::equivalent(job.map, job.output, none))
+    throw Error(job.output.string() +
+                ": keeps the scans it was made of, which an updated map does not have; give "
+                "another --output");
+  return map;
+}
+
 const char* name(PoseKind kind) {
   return kind == PoseKind::truth ? "truth" : "estimate";
 }
@@ -130,7 +142,7 @@ Json summaryJson(const MapUpdateSummary& summary, const MapUpdateJob& job) {
 MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& settings,
                                const ScanProgress& progress) {
   job.validate();
-  const io::PoleMapData before = io::readPoleMap(job.map);
+  const io::PoleMapData before = readMap(job);
   auto info = updateFacts(before.info, job, settings);
   MapUpdateSummary summary;
   summary.before = before.poles.size();

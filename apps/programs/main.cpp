@@ -1,6 +1,8 @@
 /// \file main.cpp
 /// \brief All programs are one file: the name by which it is called tells which one runs.
 
+#include <fcntl.h>
+
 #include <filesystem>
 #include <iostream>
 
@@ -14,8 +16,19 @@
 #include "map/MapApp.h"
 #include "simulate/SimulateApp.h"
 
+namespace {
+
+/// An output must not get the number of a standard stream that is closed: prints would go into it.
+void openStandardStreams() {
+  for (const int descriptor : {0, 1, 2})
+    if (fcntl(descriptor, F_GETFD) < 0) open("/dev/null", O_RDWR);  // takes the lowest free number
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace polemcl::apps;
+  openStandardStreams();
   static constexpr struct {
     const char* name;
     int (*main)(int argc, const char* const* argv);

@@ -48,6 +48,15 @@ TEST(Messages, ErrorsAreRedOnATerminalOnly) {
   EXPECT_FALSE(has(shell("env -u NO_COLOR TERM=xterm " + failing).out, "\033"));
 }
 
+TEST(Messages, WhatCannotBePrintedIsAFailure) {
+  for (const std::string command :
+       {"pole-map --help", "pole-localize --config demo.ini --print-config"}) {
+    const Outcome outcome = shell(bin + "/" + command + " >/dev/full");
+    EXPECT_EQ(outcome.code, 1) << command;
+    EXPECT_TRUE(has(outcome.out, "cannot write to standard output")) << outcome.out;
+  }
+}
+
 TEST(Messages, ABarIsForTerminals) {
   if (!terminalsExist()) GTEST_SKIP() << "no pseudo terminal: is /dev/pts mounted?";
   const TempFolder folder;

@@ -1,6 +1,7 @@
 #include <cstdlib>
 
 #include "eval/Figures.h"
+#include "io/map/PoleMapFile.h"
 #include "support/EvalTest.h"
 
 namespace polemcl::test_eval_app {
@@ -52,6 +53,20 @@ TEST_F(EvalApp, ScoresAMapTheAuthorsWay) {
   EXPECT_DOUBLE_EQ(json["f1"], 2 * 0.75 / 1.75);
   EXPECT_EQ(run(map()).out,
             "map poles 4, truth poles 3, matches 3\nprecision 0.7500  recall 1.0000  F1 0.8571\n");
+}
+
+TEST_F(EvalApp, MapsOfDifferentDatumsAreNotCompared) {
+  const auto mapAt = [&](const std::string& name, const std::string& datum) {
+    io::PoleMapData data;
+    data.poles.resize(1);
+    data.info["datum"] = datum;
+    io::writePoleMap(at(name), data);
+    return at(name);
+  };
+  const auto one = mapAt("one.polemap", "52.5,13.4,0"), other = mapAt("other.polemap", "10,20,0");
+  expectFailure(run({"map", "--truth", one, "--map", other}),
+                {"other.polemap: its datum is 10,20,0", "one.polemap is 52.5,13.4,0"});
+  EXPECT_EQ(run({"map", "--truth", one, "--map", one}).code, 0);
 }
 
 TEST_F(EvalApp, ScoresAMapOneToOneWithinARadius) {

@@ -378,6 +378,25 @@ TEST_F(LiveDriveTest, AReaderThatStallsDoesNotKeepTheDriveFromItsEnd) {
   EXPECT_GE(io::readPlanarTum(folder / "out/run_00.tum").size(), 2u);
 }
 
+TEST_F(LiveDriveTest, AStreamThatNobodyReadsDoesNotHoldTheProgram) {
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  streamed = "pipe";
+  expectFailure(run({"--for", "0.3"}), {"pipe: nobody reads it"});
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST_F(LiveDriveTest, ADriveWithoutPolesKeepsItsResults) {
+  std::thread sender([this] {
+    drive(6, [this](std::size_t complete) { waitForLines(complete); });
+    waitForLines(4);
+    interrupt();
+  });
+  const Outcome outcome = run({"--set", "scan_line.min_confidence=1"});
+  sender.join();
+  expectFailure(outcome, {"no pole in any of", "the results up to then are in"});
+  EXPECT_TRUE(fs::exists(folder / "out/summary.json"));
+}
+
 TEST_F(LiveDriveTest, AFirstScanThatCannotBeUsedIsSaid) {
   std::thread sender([this] { drive(6, [](std::size_t) {}); });
   start = "100000,0,0,2,5";
@@ -399,7 +418,7 @@ TEST(EndSignals, ASecondSignalOfEitherKindEndsTheProgram) {
 }
 
 TEST_F(LiveDriveTest, EndsAfterTheGivenTime) {
-  expectFailure(run({"--for", "0.3"}), {"sensors.ini: no scan with odometry came"});
+  expectFailure(run({"--for", "0.3"}), {"sensors.ini: no scan came"});
   EXPECT_FALSE(fs::exists(folder / "out/summary.json"));
 }
 

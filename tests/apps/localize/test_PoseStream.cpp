@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "support/LocalizeTest.h"
+#include "support/Shell.h"
 
 namespace polemcl::test_pose_stream {
 
@@ -68,6 +69,24 @@ TEST_F(PoseStream, LeavesTheInputsAlone) {
   expectFailure(runWithTruth({"--stream", (folder / "map.polemap").string()}),
                 {"--stream", "map.polemap: is an input"});
   EXPECT_EQ(readText(folder / "map.polemap"), map);
+}
+
+/// By a link as well: what lies in the folder of the results may be replaced.
+TEST_F(PoseStream, LeavesLinkedInputsAlone) {
+  fs::create_directories(folder / "out");
+  fs::copy(folder / "truth.tum", folder / "out/run_05.tum");
+  fs::create_symlink("out/run_05.tum", folder / "link.tum");
+  expectFailure(run({"--truth", (folder / "link.tum").string()}), {"link.tum: is an input"});
+  EXPECT_TRUE(fs::exists(folder / "out/run_05.tum"));
+}
+
+TEST_F(PoseStream, ClosedStandardStreamsDoNotEndInIt) {
+  std::string command = std::string(POLEMCL_BIN_DIR) + "/pole-localize";
+  for (const auto& argument :
+       arguments({"--global", "--stream", (folder / "poses.jsonl").string()}))
+    command += " " + argument;
+  EXPECT_EQ(shell(command + " <&- >&- 2>&-").code, 0);
+  EXPECT_EQ(lines(readText(folder / "poses.jsonl")).size(), scans);
 }
 
 TEST_F(PoseStream, NamesAFileThatCannotBe) {

@@ -126,6 +126,13 @@ TEST_F(MapImportApp, LampsTreesSignsAndLightsOfOpenStreetMap) {
   EXPECT_EQ(map().poles.size(), 2u);
 }
 
+TEST_F(MapImportApp, OptionsThatTheInventoryHasNoUseForAreRefused) {
+  EXPECT_HAS(failure("a.osm", s_osm, {"--crs", "EPSG:25833"}), "a.osm: places of OpenStreetMap");
+  EXPECT_HAS(failure("a.osm", s_osm, {"--separator", ";"}), "are for CSV files");
+  EXPECT_HAS(failure("a.csv", "lon,lat,girth\n13,52,3\n", {"--radius-property", "typo"}),
+             "--radius-property: no entry has 'typo', but");
+}
+
 TEST_F(MapImportApp, BadInventoriesAreRefusedWithTheirPlace) {
   EXPECT_HAS(failure("a.txt", ""), "allowed: .csv, .geojson, .json, .osm, .xml");
   EXPECT_HAS(failure("a.csv", s_utm), "--columns EAST,NORTH");

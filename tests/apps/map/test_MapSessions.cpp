@@ -141,6 +141,14 @@ TEST_F(MapSessions, SessionsThatDisagreeOnTheDatumAreRefused) {
   expectFailure(map("all.ini", {"one"}, "n.polemap", {"--datum", "91,0"}), {"--datum", "91,0"});
 }
 
+TEST_F(MapSessions, AnUpdateInPlaceDoesNotTakeTheScansAway) {
+  ASSERT_EQ(map("all.ini", {"one"}, "m.polemap", {"--keep-scans"}).code, 0);
+  const std::string before = readText(folder / "m.polemap");
+  expectFailure(map("all.ini", {"two"}, "m.polemap", {"--map", at("m.polemap")}, "update"),
+                {"m.polemap: keeps the scans it was made of", "--output"});
+  EXPECT_EQ(readText(folder / "m.polemap"), before);
+}
+
 TEST_F(MapSessions, ReadTheMapOnceAsAnotherMayReplaceIt) {
   ASSERT_EQ(map("all.ini", {"one"}, "m.polemap", {"--keep-scans"}).code, 0);
   const testing_disk::DiskCalls calls;

@@ -96,6 +96,27 @@ TEST(SteadyTimes, ClocksThatAreSetBackByDifferentTimesGoOnAlike) {
   EXPECT_DOUBLE_EQ(times.offset("rear"), 64.5);
 }
 
+/// The computer's clock is right throughout, at 1000 s and ten times a second later.
+TEST(SteadyTimes, AStrayTimeDoesNotLast) {
+  const SteadyTimes::Clock::time_point begin;
+  const auto timesOf = [&](const std::vector<double>& off) {
+    SteadyTimes times(1000, begin);
+    std::vector<double> all;
+    for (std::size_t i = 0; i < off.size(); ++i) {
+      const double now = 1000 + 0.1 * static_cast<double>(i);
+      const auto arrival = begin + std::chrono::milliseconds(100 * i);
+      all.push_back(times.of("sensor", now + off[i], arrival) - now);
+    }
+    return all;
+  };
+  const std::vector<double> late = timesOf({0, 0, -4.5, 0, 0}), ahead = timesOf({0, 5, 5, 5, 0, 0});
+  EXPECT_NEAR(late[2], 0, 1e-9) << "it counts for the time of its arrival";
+  EXPECT_NEAR(late[4], 0, 1e-9);
+  EXPECT_NEAR(ahead[3], 5, 1e-9);
+  EXPECT_NEAR(ahead[5], 0, 1e-9);
+  EXPECT_NEAR(timesOf({4, 4, 0, 0})[3], 0, 1e-9) << "a sender's clock that is set right";
+}
+
 /// The computer's clock is set back by 60 s while odometry of before is still on its way.
 TEST(LiveQueue, AClockThatIsSetBackDoesNotSilenceTheSensors) {
   LiveQueueOptions options = patient();

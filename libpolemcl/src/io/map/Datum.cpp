@@ -52,6 +52,17 @@ std::optional<Datum> datumOf(const std::map<std::string, std::string>& info,
   return parseDatum(found->second, where);
 }
 
+void requireSameDatum(const std::pair<std::string, std::map<std::string, std::string>>& one,
+                      const std::pair<std::string, std::map<std::string, std::string>>& other) {
+  const auto first = datumOf(one.second, one.first + ": "),
+             second = datumOf(other.second, other.first + ": ");
+  if (!first || !second || *first == *second) return;
+  throw Error(other.first + ": its datum is " + datumText(*second) + ", but that of " + one.first +
+              " is " + datumText(*first) +
+              "; maps are compared in one frame: pole-map convert writes one as GeoJSON, pole-map "
+              "import --datum brings that to the datum of the other");
+}
+
 void setDatum(std::map<std::string, std::string>& info, const Datum& datum,
               const std::string& where) {
   const auto before = datumOf(info, where);

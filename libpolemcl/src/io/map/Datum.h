@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace polemcl::io {
 
@@ -29,6 +30,12 @@ std::string datumText(const Datum& datum);
 /// \brief The datum in a map's info; nullopt if absent. \throws Error when it is malformed.
 std::optional<Datum> datumOf(const std::map<std::string, std::string>& info,
                              const std::string& where);
+
+/// \brief Maps of different datums have different coordinates for the same place.
+/// \param one, other Their infos, with the names of their files.
+/// \throws Error when both have a datum and these differ.
+void requireSameDatum(const std::pair<std::string, std::map<std::string, std::string>>& one,
+                      const std::pair<std::string, std::map<std::string, std::string>>& other);
 
 /// \brief Stores a datum in a map's info. \throws Error when the info holds a different datum.
 void setDatum(std::map<std::string, std::string>& info, const Datum& datum,

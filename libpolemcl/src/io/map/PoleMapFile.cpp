@@ -2,10 +2,12 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/common/Covariance.h"
+#include "core/common/PoleIndex.h"
 #include "core/mapping/MapAccumulator.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
@@ -31,6 +33,8 @@ const char* fault(const MapPole& pole) {
   for (const double value : {pole.x, pole.y, pole.radius, pole.bottom, pole.top, pole.confidence}) {
     if (!std::isfinite(value)) return "a value is not finite";
   }
+  if (std::max(std::abs(pole.x), std::abs(pole.y)) > PoleIndex::farthest)
+    return "the place is more than 1e9 m from the origin";
   if (pole.radius < 0) return "the radius is negative";
   if (pole.confidence < 0 || pole.confidence > 1) return "the confidence is outside 0 … 1";
   if (!pole.covariance.allFinite()) return "the covariance is not finite";

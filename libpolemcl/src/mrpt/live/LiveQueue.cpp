@@ -21,9 +21,15 @@ constexpr std::chrono::milliseconds kGlance{10};  // between two questions wheth
 double SteadyTimes::of(const std::string& sensor, double time, Clock::time_point arrival) {
   const auto [at, isNew] = m_sensors.try_emplace(sensor);
   Sensor& known = at->second;
-  if (!isNew && time + known.offset < known.last - kLatest) {
-    const double expected =
-        known.last + std::chrono::duration<double>(arrival - known.arrival).count();
+  const auto after = [&](double start, Clock::time_point begin) {
+    return start + std::chrono::duration<double>(arrival - begin).count();
+  };
+  const double expected = after(known.last, known.arrival);
+  const bool goesBack = time + known.offset < known.last - kLatest;
+  const bool leaps = goesBack || time + known.offset > expected + kLatest;
+  if (!isNew && leaps && std::abs(time - after(m_now, m_at)) <= kLatest) {
+    known.offset = 0;
+  } else if (!isNew && goesBack) {
     if (std::abs(time + m_offset - expected) > kLatest) m_offset = expected - time;
     known.offset = m_offset;
   }
@@ -47,7 +53,9 @@ double LiveQueue::steadyTime(CObservation& observation, std::string& warning) {
   const double time = m_times.of(sensor, stated, Clock::now());
   const double offset = m_times.offset(sensor);
   if (offset != 0) observation.timestamp = mrpt::Clock::fromDouble(time);
-  if (offset != before)
+  if (offset != before && offset == 0)
+    warning = "the times of " + sensor + " are those of this computer again";
+  else if (offset != before)
     warning = "the clock of " + sensor + " was set back by " + io::fixed(offset - before, 1) +
               " s: its times go on without that step";
   return time;

@@ -33,12 +33,16 @@ struct LiveQueueOptions {
 
 /// \brief Times of sensors that never go far back: where a clock is set back, they go on as the
 /// time of arrival does. All sensors of one clock get the same offset, so what belongs together
-/// stays so.
+/// stays so. Times that leap to those of the computer's clock, as it was not set, get no offset: a
+/// stray time or a clock that was wrong for a while does not last.
 class SteadyTimes {
  public:
   using Clock = std::chrono::steady_clock;
   /// \brief An observation may be this late without a clock that was set back, s.
   static constexpr double kLatest = 3;
+  /// \param now Time of the computer's clock at the moment `at`, s.
+  explicit SteadyTimes(double now = mrpt::Clock::nowDouble(), Clock::time_point at = Clock::now())
+      : m_now(now), m_at(at) {}
   /// \param time As the sensor states it, s. \return What to count it for, s.
   double of(const std::string& sensor, double time, Clock::time_point arrival);
   /// \brief What is added to the times of a sensor, s.
@@ -49,6 +53,8 @@ class SteadyTimes {
     double offset = 0, last = 0;  ///< s
     Clock::time_point arrival;    ///< of the last observation
   };
+  double m_now;  ///< s
+  Clock::time_point m_at;
   std::map<std::string, Sensor> m_sensors;
   double m_offset = 0;  ///< since the last step of a clock, s
 };
