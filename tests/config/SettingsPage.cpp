@@ -27,7 +27,7 @@ height_m = 1.0      # metres above the ground
   there is looked for in `/usr/share/polemcl/config`.
 - `--print-config` prints the effective settings of the tiers *sensor* and *tuning*, `--print-config --all` all of them;
   the program then ends.
-- The defaults are the settings that were measured as the best. Those of `config/paper/` are the paper's.
+- The defaults were chosen by measuring, between LiDARs and drives: one may be better for yours. Those of `config/paper/` are the paper's.
 - Angles are in degrees in files and rounded on these pages. A number outside the allowed values is refused, with file,
   section, key and what is allowed. Unknown sections and keys are refused as well, but for the sections of the simulator
   and of the view in programs that have no use for them.
