@@ -1,3 +1,4 @@
+#include <mrpt/core/initializer.h>
 #include <mrpt/serialization/CArchive.h>
 #include <mrpt/serialization/stl_serialization.h>  // to write std::map
 
@@ -18,6 +19,11 @@
 #include "mrpt/drawing/SceneParts.h"
 
 IMPLEMENTS_SERIALIZABLE(CPoleMap, CMetricMap, polemcl)
+
+// For loading the library as a plugin. After the line above, which names the class.
+MRPT_INITIALIZER(registerCPoleMap) {
+  mrpt::rtti::registerClass(CLASS_ID_NAMESPACE(CPoleMap, polemcl));
+}
 
 namespace polemcl {
 

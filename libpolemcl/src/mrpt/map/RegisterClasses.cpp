@@ -1,4 +1,3 @@
-#include <mrpt/core/initializer.h>
 #include <mrpt/rtti/CObject.h>
 
 #include <polemcl/mrpt/common/RegisterClasses.h>
@@ -7,14 +6,11 @@
 
 namespace polemcl {
 
+/// While a program starts, a class may not have its name yet: Clang sets it later than GCC. It then
+/// registers itself.
 void registerClasses() {
-  mrpt::rtti::registerClass(CLASS_ID(CObservationPoles));
-  mrpt::rtti::registerClass(CLASS_ID(CPoleMap));
+  for (const auto* id : {CLASS_ID(CObservationPoles), CLASS_ID(CPoleMap)})
+    if (id->className) mrpt::rtti::registerClass(id);
 }
 
 }  // namespace polemcl
-
-// For loading the library as a plugin.
-MRPT_INITIALIZER(registerPolemclClasses) {
-  polemcl::registerClasses();
-}

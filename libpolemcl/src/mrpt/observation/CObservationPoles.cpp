@@ -1,3 +1,4 @@
+#include <mrpt/core/initializer.h>
 #include <mrpt/opengl/stock_objects.h>
 #include <mrpt/serialization/CArchive.h>
 
@@ -14,6 +15,11 @@
 #include "mrpt/drawing/SceneParts.h"
 
 IMPLEMENTS_SERIALIZABLE(CObservationPoles, CObservation, polemcl)
+
+// For loading the library as a plugin. After the line above, which names the class.
+MRPT_INITIALIZER(registerCObservationPoles) {
+  mrpt::rtti::registerClass(CLASS_ID_NAMESPACE(CObservationPoles, polemcl));
+}
 
 namespace polemcl {
 

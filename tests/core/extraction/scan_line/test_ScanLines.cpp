@@ -74,7 +74,7 @@ struct BruteForce {
 
 void expectSorted(const ScanLines& lines) {
   for (int row = 0; row < lines.rows(); ++row)
-    for (const Return* r = lines.begin(row); r + 1 < lines.end(row); ++r) {
+    for (const Return* r = lines.begin(row); lines.end(row) - r > 1; ++r) {
       ASSERT_LE(r->azimuth, r[1].azimuth);
       if (r->azimuth == r[1].azimuth) {
         ASSERT_LE(r->rho, r[1].rho);
