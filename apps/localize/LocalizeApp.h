@@ -66,8 +66,8 @@ struct LocalizeResult {
 /// window makes a rawlog wait; the results stay the same.
 ///
 /// With sensors, scans that come faster than they can be handled are dropped (see LiveQueue), and
-/// the drive ends with a signal (see LiveDrive.h). A sensor that fails ends it as well, and so does
-/// a stream that cannot be written; the error comes after the results are complete.
+/// the drive ends with a signal (see EndSignals.h). A sensor that fails ends it as well, and so
+/// does a stream that cannot be written; the error comes after the results are complete.
 ///
 /// The folder `output` gets:
 /// - `run_NN.tum`: the estimated robot poses, a row per scan, the first included, at its time;

@@ -80,16 +80,20 @@ std::string LocalizePlayer::whyUseless() const {
     return input + ": no pole in any of " + scans + " scans (" + std::to_string(counts.points) +
            " valid points, " + std::to_string(counts.emptyScans) +
            " empty scans): check [sensor] and [extraction]";
-  if (m_truth && 2 * m_covered < counts.scans)
+  if (m_truth && !isCovered())
     return m_facts.job.truth->string() + ": the truth covers " + std::to_string(m_covered) +
            " of " + scans + " scans, at least half are needed: does it " + "belong to this rawlog?";
   return "";
 }
 
+bool LocalizePlayer::isCovered() const {
+  return m_truth && 2 * m_covered >= m_facts.counts.scans;
+}
+
 LocalizeResult LocalizePlayer::finish() {
   LocalizeResult result;
   for (RunFiles& files : m_files) {
-    const auto errors = files.finish();
+    const auto errors = files.finish(isCovered());
     if (m_truth) result.errors.push_back(errors);
     result.spreadCheck.ok += files.spreadCheck().ok;
     result.spreadCheck.beyond += files.spreadCheck().beyond;

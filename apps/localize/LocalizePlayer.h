@@ -41,6 +41,7 @@ class LocalizePlayer {
 
  private:
   void begin(const PoleScan& first);
+  bool isCovered() const;
 
   LocalizeFacts& m_facts;
   const LocalizationMap& m_map;

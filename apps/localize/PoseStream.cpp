@@ -60,7 +60,8 @@ PoseStream::~PoseStream() = default;
 /// A FIFO cannot be opened before somebody reads it.
 int PoseStream::opened() const {
   const std::string name = m_target.string();
-  const bool isPipe = std::filesystem::is_fifo(m_target);
+  std::error_code none;
+  const bool isPipe = std::filesystem::is_fifo(m_target, none);
   constexpr int kSilent = 50;  // waits before it is told: a second
   for (int waits = 0;; ++waits) {
     const int descriptor =

@@ -23,8 +23,8 @@ namespace polemcl::apps {
 /// sensors that were dropped so far.
 ///
 /// A line that cannot be written is the last one: the results do not depend on who reads the poses.
-/// Where nobody reads, the next line waits, and with it the work.
-/// From then on the program ignores SIGPIPE, also when it ends and the C library flushes.
+/// Where nobody reads, the next line waits, and with it the work. Once a stream exists, the program
+/// ignores SIGPIPE, also when it ends and the C library flushes.
 class PoseStream {
  public:
   /// \param target A file, which is emptied first, a FIFO, whose reader is waited for, or "-":

@@ -37,12 +37,12 @@ void RunFiles::add(const LocalizationUpdate& update) {
   ++m_scan;
 }
 
-std::optional<TrajectoryErrors> RunFiles::finish() {
+std::optional<TrajectoryErrors> RunFiles::finish(bool isCovered) {
   m_trajectory.flush();
   m_covariances.flush();
   m_health.flush();
   if (m_errors) m_errors->flush();
-  if (!m_evaluator || m_evaluator->estimates() == 0) return std::nullopt;
+  if (!isCovered || !m_evaluator || m_evaluator->estimates() == 0) return std::nullopt;
   return m_evaluator->finish();
 }
 

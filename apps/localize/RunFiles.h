@@ -31,10 +31,10 @@ class RunFiles {
 
   /// \brief The next scan. \throws Error when it cannot be written, or a pose is not finite.
   void add(const LocalizationUpdate& update);
-  /// \brief After the last scan: completes the files.
-  /// \return The errors; none without truth, or when no pose was ever known.
+  /// \brief After the last scan: completes the files. \param isCovered The truth covers the drive.
+  /// \return The errors; none without such a truth, or when no pose was ever known.
   /// \throws Error when a file cannot be written, or the truth covers less than half of the poses.
-  std::optional<TrajectoryErrors> finish();
+  std::optional<TrajectoryErrors> finish(bool isCovered);
   const SpreadCheck& spreadCheck() const { return m_spreadCheck; }
 
  private:

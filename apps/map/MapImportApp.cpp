@@ -23,10 +23,11 @@ constexpr double kConfidence = 0.9;  ///< inventories hold poles that are gone
 void requireFitting(const MapImportOptions& options, const std::string& ending) {
   const std::string file = options.input.string();
   const MapImportOptions usual;
-  if (ending == ".csv") return;
+  const bool isOsm = ending == ".osm" || ending == ".xml";
+  if (!isOsm && ending != ".geojson" && ending != ".json") return;
   if (!options.columns.empty() || options.separator != usual.separator)
     throw Error(file + ": --columns and --separator are for CSV files");
-  if (ending != ".geojson" && ending != ".json" && options.coordinates != usual.coordinates)
+  if (isOsm && options.coordinates != usual.coordinates)
     throw Error(file + ": places of OpenStreetMap are in WGS 84; leave out --crs");
 }
 

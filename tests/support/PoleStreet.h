@@ -100,12 +100,12 @@ inline PoleStreet makeStreet(const StreetOptions& options = {}) {
     for (const auto& pole : poles) {
       const Pose2D seen = relative(street.truth[i], {pole.x(), pole.y(), 0});
       if (std::hypot(seen.x, seen.y) >= options.range || dice.uniform() < options.missed) continue;
-      const double x = seen.x + options.detection * dice.normal();
-      see(x, seen.y + options.detection * dice.normal());
+      const double y = seen.y + options.detection * dice.normal();
+      see(seen.x + options.detection * dice.normal(), y);
     }
     for (double k = dice.uniform(0, options.falsePerScan); k >= 0.5; k -= 1) {
-      const double x = dice.uniform(-20, 20);
-      see(x, dice.uniform(-20, 20));
+      const double y = dice.uniform(-20, 20);
+      see(dice.uniform(-20, 20), y);
     }
     frame.points = 1000;
     street.frames.push_back(frame);

@@ -365,7 +365,7 @@ TEST_F(LiveDriveTest, AReaderThatStallsDoesNotKeepTheDriveFromItsEnd) {
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   const int reader = open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
   ASSERT_GE(reader, 0);
-  fcntl(reader, F_SETPIPE_SZ, 4096);  // for the first line, no more
+  ASSERT_GE(fcntl(reader, F_SETPIPE_SZ, 4096), 4096);  // for the first line, no more
   std::thread sender([this] {
     drive(30, [](std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(30)); });
     interrupt();

@@ -153,6 +153,42 @@ TEST(LiveQueue, AClockThatIsSetBackDoesNotSilenceTheSensors) {
   EXPECT_HAS(warnings[1], "the clock of wheels was set back by 59.5 s");
 }
 
+/// The clock of a sensor is 5 s ahead for a while; that of the computer is right throughout.
+TEST(LiveQueue, ScansAndOdometryComeAgainAfterAClockThatWasAhead) {
+  LiveQueueOptions options = patient();
+  std::vector<std::string> warnings;
+  options.warn = [&](const std::string& text) { warnings.push_back(text); };
+  LiveQueue queue(options);
+  const double now = mrpt::Clock::nowDouble();
+  RawlogEntry entry;
+  for (const double off : {5.0, 0.0}) {
+    queue.push(odometry(now + off, 0));
+    queue.push(scan(now + off));
+    ASSERT_TRUE(queue.next(entry));
+    EXPECT_FALSE(entry.arrival);
+    ASSERT_TRUE(queue.next(entry));
+    EXPECT_NEAR(mrpt::Clock::toDouble(entry.observation->timestamp), now + off, 1e-6);
+  }
+  EXPECT_EQ(queue.dropped(), 0u);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_HAS(warnings[1], "the times of lidar are those of this computer again");
+}
+
+/// A reading of 5 s ahead must not be a neighbour of those that come then.
+TEST(LiveQueue, OdometryOfAClockThatWasAheadIsForgotten) {
+  const auto queue = std::make_shared<LiveQueue>(patient());
+  const double now = mrpt::Clock::nowDouble();
+  for (const auto& [after, x] : {std::pair(0.0, 0.0), {5.0, 0.05}, {0.1, 0.1}, {4.9, 4.9}})
+    queue->push(odometry(now + after, x));
+  for (const double after : {0.0, 0.1, 4.95}) queue->push(scan(now + after));
+  queue->end();
+  double way = 0;
+  const auto counts = streamPoles(queue, "sensors.ini", options(),
+                                  [&](const ReadScan& taken) { way += taken.motion->mean.x; });
+  EXPECT_EQ(counts.scans, 3u);
+  EXPECT_NEAR(way, 4.95, 1e-3);
+}
+
 /// Another thread asks; the scan must not come before the odometry of its time.
 TEST(LiveQueue, AScanWaitsForTheOdometryOfItsTime) {
   LiveQueue queue(patient());

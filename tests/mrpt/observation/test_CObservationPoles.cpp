@@ -122,7 +122,6 @@ TEST(CObservationPoles, MovesPolesToTheRobotFrame) {
   EXPECT_EQ(poles_robot[0].top, 3.5);
 }
 
-// Roll and pitch do not affect the planar frame.
 /// MRPT computes the angles of a pose when they are asked for, in const functions as well.
 struct PosePeek : mrpt::poses::CPose3D {
   static bool hasAngles(const mrpt::poses::CPose3D& pose) {
@@ -141,6 +140,7 @@ TEST(CObservationPoles, ChangesNothingLateSoThatThreadsCanShareIt) {
   EXPECT_TRUE(PosePeek::hasAngles(read->sensorPose));
 }
 
+// Roll and pitch do not affect the planar frame.
 TEST(CObservationPoles, OnlyThePlanarPartOfTheSensorPoseCounts) {
   CObservationPoles scan = samples::observation();
   scan.setSensorPose(mrpt::poses::CPose3D(1, 2, 9, M_PI / 2, 0.1, M_PI));

@@ -33,6 +33,7 @@ double SteadyTimes::of(const std::string& sensor, double time, Clock::time_point
     if (std::abs(time + m_offset - expected) > kLatest) m_offset = expected - time;
     known.offset = m_offset;
   }
+  m_wentBack = !isNew && time + known.offset < known.last - kLatest;
   known.last = time + known.offset;
   known.arrival = arrival;
   return known.last;
@@ -45,7 +46,7 @@ double SteadyTimes::offset(const std::string& sensor) const {
 
 LiveQueue::LiveQueue(LiveQueueOptions options) : m_options(std::move(options)) {}
 
-/// The time of the observation, which it has then. \param warning Of a step back of its clock.
+/// The time of the observation, which it has then. \param warning Of a clock that was set.
 double LiveQueue::steadyTime(CObservation& observation, std::string& warning) {
   const std::string& sensor = observation.sensorLabel;
   const double before = m_times.offset(sensor);
@@ -53,12 +54,21 @@ double LiveQueue::steadyTime(CObservation& observation, std::string& warning) {
   const double time = m_times.of(sensor, stated, Clock::now());
   const double offset = m_times.offset(sensor);
   if (offset != 0) observation.timestamp = mrpt::Clock::fromDouble(time);
-  if (offset != before && offset == 0)
+  if (m_times.wentBack()) forgetFuture(sensor);
+  if (m_times.wentBack() || (offset != before && offset == 0))
     warning = "the times of " + sensor + " are those of this computer again";
   else if (offset != before)
     warning = "the clock of " + sensor + " was set back by " + io::fixed(offset - before, 1) +
               " s: its times go on without that step";
   return time;
+}
+
+/// The times of this sensor were ahead.
+void LiveQueue::forgetFuture(const std::string& label) {
+  m_taken.erase(label);
+  const auto isAhead = [&](const Waiting& scan) { return scan.observation->sensorLabel == label; };
+  m_scans.erase(std::remove_if(m_scans.begin(), m_scans.end(), isAhead), m_scans.end());
+  if (label == m_odometryLabel) m_reached.reset();
 }
 
 void LiveQueue::push(const CObservation::Ptr& observation) {

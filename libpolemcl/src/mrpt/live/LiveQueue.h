@@ -33,8 +33,9 @@ struct LiveQueueOptions {
 
 /// \brief Times of sensors that never go far back: where a clock is set back, they go on as the
 /// time of arrival does. All sensors of one clock get the same offset, so what belongs together
-/// stays so. Times that leap to those of the computer's clock, as it was not set, get no offset: a
-/// stray time or a clock that was wrong for a while does not last.
+/// stays so. Times that jump and then agree with the computer's clock, counted from the start of
+/// the drive, get no offset: a clock that was wrong for a while does not last. They may go back
+/// then.
 class SteadyTimes {
  public:
   using Clock = std::chrono::steady_clock;
@@ -45,6 +46,8 @@ class SteadyTimes {
       : m_now(now), m_at(at) {}
   /// \param time As the sensor states it, s. \return What to count it for, s.
   double of(const std::string& sensor, double time, Clock::time_point arrival);
+  /// \brief Whether the last time is far before the one before it, of the same sensor.
+  bool wentBack() const { return m_wentBack; }
   /// \brief What is added to the times of a sensor, s.
   double offset(const std::string& sensor) const;
 
@@ -57,6 +60,7 @@ class SteadyTimes {
   Clock::time_point m_at;
   std::map<std::string, Sensor> m_sensors;
   double m_offset = 0;  ///< since the last step of a clock, s
+  bool m_wentBack = false;
 };
 
 /// \brief Scans in the order of their times, each after the odometry of its time. Odometry is given
@@ -92,6 +96,7 @@ class LiveQueue : public EntrySource {
     mrpt::obs::CObservation::Ptr observation;
   };
   double steadyTime(mrpt::obs::CObservation& observation, std::string& warning);
+  void forgetFuture(const std::string& label);
   void pushScan(Waiting scan);
   bool isExpected(const std::string& label);
   void endNow(const std::string& failure);

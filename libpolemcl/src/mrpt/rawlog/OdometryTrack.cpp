@@ -72,6 +72,10 @@ void OdometryTrack::clear() {
   m_origin = {};
 }
 
+void OdometryTrack::forgetAfter(double time) {
+  m_readings.erase(m_readings.upper_bound(time), m_readings.end());
+}
+
 void OdometryTrack::forgetBefore(double time) {
   if (m_readings.empty()) return;
   // What tells how the last motion goes on stays.

@@ -51,6 +51,8 @@ class OdometryTrack {
   Pose2D asRead(const Pose2D& pose) const { return relative(m_origin, pose); }
   /// \brief Drops readings that are not needed for poses at `time` or later.
   void forgetBefore(double time);
+  /// \brief Drops readings later than this: the clock was ahead.
+  void forgetAfter(double time);
   /// \brief Drops all readings; the jumps stay counted.
   void clear();
 

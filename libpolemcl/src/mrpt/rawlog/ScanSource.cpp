@@ -88,6 +88,9 @@ std::string sensorOf(const CObservation& observation) {
   return std::string(observation.GetRuntimeClass()->className) + " " + observation.sensorLabel;
 }
 
+/// A sensor whose times go back by more than this was ahead, s.
+constexpr double kClockSet = 3;
+
 /// MRPT has one such folder, which other threads may read: it is only set where it changes.
 void setFolderOfClouds(const std::filesystem::path& folder) {
   static std::mutex ofFolder;
@@ -158,10 +161,13 @@ void ScanSource::take(const CObservation::Ptr& observation, const RawlogEntry& e
   const double time = mrpt::Clock::toDouble(observation->timestamp);
   if (const auto odometry = std::dynamic_pointer_cast<CObservationOdometry>(observation)) {
     if (m_odometry.empty()) m_odometryLabel = odometry->sensorLabel;
-    if (odometry->sensorLabel == m_odometryLabel)
-      m_odometry.add(time, planar(odometry->odometry));
-    else
+    if (odometry->sensorLabel != m_odometryLabel) {
       m_otherOdometry.insert(odometry->sensorLabel);
+      return;
+    }
+    if (isLive() && time < m_lastOdometry - kClockSet) m_odometry.forgetAfter(time);
+    m_lastOdometry = time;
+    m_odometry.add(time, planar(odometry->odometry));
     return;
   }
   if (!isScan(*observation)) {

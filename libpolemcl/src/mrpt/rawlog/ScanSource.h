@@ -4,6 +4,7 @@
 
 #include <mrpt/obs/CActionCollection.h>
 
+#include <cmath>
 #include <deque>
 #include <exception>
 #include <memory>
@@ -98,7 +99,8 @@ class ScanSource {
   std::shared_ptr<EntrySource> m_entries;
   std::optional<PoseWithCovariance> m_moved;  ///< motion by actions since the last scan
   OdometryTrack m_odometry;
-  std::string m_odometryLabel;  ///< of the sensor whose readings are used
+  std::string m_odometryLabel;        ///< of the sensor whose readings are used
+  double m_lastOdometry = -INFINITY;  ///< time of its last reading, s
   ScanTiming m_timing;
   std::deque<Scan> m_waiting;  ///< scans waiting for later odometry
   std::string m_sensor;        ///< class and label of the scans in use; empty before the first
