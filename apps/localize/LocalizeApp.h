@@ -108,7 +108,9 @@ struct LocalizeResult {
 /// to stdout.
 /// \throws Error as the readers do, and when the map has no poles, scans lack odometry, no pole is
 ///         ever seen, there is no start pose or it is more than 1 km from all poles of the map, or
-///         the truth covers less than half of the scans. The folder is as it was before then.
+///         the truth covers less than half of the scans. The folder is as it was before then, but
+///         with scans of sensors, and where only `bag` or `stream` cannot be written: it then has
+///         the results.
 LocalizeResult localize(const LocalizeJob& job);
 
 /// \brief A map for `settings` from a file. \throws Error when it cannot be read or has no poles.

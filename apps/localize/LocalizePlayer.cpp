@@ -82,7 +82,7 @@ std::string LocalizePlayer::whyUseless() const {
            " empty scans): check [sensor] and [extraction]";
   if (m_truth && !isCovered())
     return m_facts.job.truth->string() + ": the truth covers " + std::to_string(m_covered) +
-           " of " + scans + " scans, at least half are needed: does it " + "belong to this rawlog?";
+           " of " + scans + " scans, at least half are needed: does it belong to this rawlog?";
   return "";
 }
 
