@@ -1,6 +1,7 @@
 #include "cli/OutputFolder.h"
 
 #include <fcntl.h>
+#include <fnmatch.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -27,9 +28,12 @@ void refuseForeign(const fs::path& target, const std::string& what,
   if (!fs::is_directory(fs::symlink_status(target)))
     throw Error(target.string() + ": exists and is not a folder" + advice);
   if (fs::is_empty(target)) return;
-  for (const auto& entry : fs::directory_iterator(target)) {
-    const std::string name = entry.path().filename().string();
-    if (std::find(known.begin(), known.end(), name) == known.end())
+  for (const auto& entry : fs::recursive_directory_iterator(target)) {
+    const std::string name = entry.path().lexically_relative(target).string();
+    const auto fits = [&](const std::string& pattern) {
+      return ::fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME) == 0;
+    };
+    if (std::none_of(known.begin(), known.end(), fits))
       throw Error(target.string() + ": holds more than " + what + " (" + name + ")" + advice);
   }
   if (!fs::exists(target / marker))

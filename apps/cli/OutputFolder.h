@@ -18,7 +18,8 @@ namespace polemcl::apps {
 class OutputFolder {
  public:
   /// \param target Where the folder shall appear. It replaces an empty folder, and an earlier
-  ///        output: one that holds nothing but `known` names, `marker` among them.
+  ///        output: one that holds nothing but `known` names, `marker` among them. A name is a
+  ///        path in the folder; it may have wildcards (fnmatch).
   /// \param what What the folder holds, for messages, such as "a simulated drive".
   /// \throws Error when something else is there (named), or the place is not writable.
   OutputFolder(const std::filesystem::path& target, const std::string& what,

@@ -109,13 +109,13 @@ MappedDrives findPoses(std::vector<MappingSession>& drives,
   return mapped;
 }
 
-void writeTrajectory(const std::filesystem::path& file, const std::vector<StampedPose2D>& path,
+void writeTrajectory(const std::filesystem::path& file, const DrivenPath& path,
                      const std::vector<PoseWithCovariance>& poses, std::size_t first) {
-  io::writeTum(file, path);
+  io::writeTum(file, path.poses);
   io::AtomicFile covariances(file.parent_path() / (file.stem().string() + "_cov.csv"));
   covariances.stream() << kEstimateColumns;
-  for (std::size_t i = 0; i < path.size(); ++i)
-    covariances.stream() << estimateRow(i, path[i].time, poses[first + i]);
+  for (std::size_t i = 0; i < path.poses.size(); ++i)
+    covariances.stream() << estimateRow(path.numbers[i], path.poses[i].time, poses[first + i]);
   covariances.commit();
 }
 

@@ -30,9 +30,15 @@ MappedDrives findPoses(std::vector<MappingSession>& drives,
                        const AddedSessions& before, std::vector<DriveFix> fixes,
                        const AllSettings& settings);
 
+/// \brief Poses of scans, and the numbers of the scans in their rawlog.
+struct DrivenPath {
+  std::vector<StampedPose2D> poses;
+  std::vector<std::size_t> numbers;
+};
+
 /// \brief Writes the path of a drive as TUM, and the covariances beside it (`a_cov.csv` of
 /// `a.tum`). \param poses Of all drives. \param first Of the drive.
-void writeTrajectory(const std::filesystem::path& file, const std::vector<StampedPose2D>& path,
+void writeTrajectory(const std::filesystem::path& file, const DrivenPath& path,
                      const std::vector<PoseWithCovariance>& poses, std::size_t first);
 
 }  // namespace polemcl::apps

@@ -114,15 +114,16 @@ Subcommand buildCommand(CLI::App& program) {
   const auto job = std::make_shared<MapBuildJob>();
   addFile(cli, "--add", job->add,
           "Map that keeps its scans; the rawlogs are added as later sessions");
-  cli.add_flag("--keep-scans", job->keepScans,
-               "Keep the poles of the used scans in the map, for a later --add");
+  auto* keep = cli.add_flag("--keep-scans", job->keepScans,
+                            "Keep the poles of the used scans in the map, for a later --add");
   Subcommand command = mappingCommand(cli, job, buildMap);
   auto* estimate = addEstimateOption(cli, *job);
   addFile(cli, "--inventory", job->inventory,
           "Map of `import` in which the rawlogs were localized: it is made as exact as the "
           "LiDAR")
       ->needs(estimate)
-      ->excludes("--add");
+      ->excludes("--add")
+      ->excludes(keep);
   estimate->needs("--inventory");
   addFile(cli, "--gnss", job->gnss,
           "Without --truth: positions from satellites (CSV: time, latitude, longitude, sigma), one "

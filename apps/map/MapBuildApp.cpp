@@ -44,6 +44,10 @@ MapAccumulator accumulator(const MapBuildJob& job, BaseMap& base, const AllSetti
   if (!base.scans)
     throw Error(job.add->string() +
                 ": keeps no scans, so none can be added; build it with --keep-scans");
+  if (base.map.info.count("pose_sigma_m") > 0)
+    throw Error(job.add->string() +
+                ": was made with --inventory; its poles out of sight would be lost, so none can be "
+                "added: build one map of all drives");
   return io::located(job.add->string() + ": ", [&] {
     return MapAccumulator(settings.map, settings.upkeep, std::move(*base.scans));
   });
@@ -102,9 +106,9 @@ void countSessions(const AddedSessions& added, MapBuildSummary& summary) {
   }
 }
 
-std::vector<std::vector<StampedPose2D>> pathsOf(const std::vector<MappingSession>& drives) {
-  std::vector<std::vector<StampedPose2D>> paths;
-  for (const MappingSession& drive : drives) paths.push_back(drive.path);
+std::vector<DrivenPath> pathsOf(const std::vector<MappingSession>& drives) {
+  std::vector<DrivenPath> paths;
+  for (const MappingSession& drive : drives) paths.push_back({drive.path, drive.numbers});
   return paths;
 }
 
@@ -116,9 +120,9 @@ std::vector<StampedPose2D> pathOf(const AddedSessions& added) {
 }
 
 void writeTrajectories(const MapBuildJob& job, const MappedDrives& mapped,
-                       const std::vector<std::vector<StampedPose2D>>& paths) {
+                       const std::vector<DrivenPath>& paths) {
   for (std::size_t i = 0, first = mapped.known; i < job.trajectories.size();
-       first += paths[i++].size())
+       first += paths[i++].poses.size())
     writeTrajectory(job.trajectories[i], paths[i], mapped.poses, first);
 }
 
@@ -194,7 +198,8 @@ void addShares(const MapBuildSummary& summary, std::map<std::string, std::string
 
 std::map<std::string, std::string> facts(const AllSettings& settings,
                                          const MapBuildSummary& summary, const MapBuildJob& job,
-                                         const std::optional<io::Datum>& datum) {
+                                         const std::optional<io::Datum>& datum,
+                                         const std::map<std::string, std::string>& before) {
   std::string names;
   for (const MapBuildSummary::Session& session : summary.sessions)
     names += (names.empty() ? "" : " ") + session.name;
@@ -209,6 +214,8 @@ std::map<std::string, std::string> facts(const AllSettings& settings,
       {"detections", std::to_string(summary.map.detections)},
       {"config", settingsText(settings)}};
   addShares(summary, info);
+  if (const auto earlier = before.find("warnings"); job.add && earlier != before.end())
+    info.insert(*earlier);
   if (datum) info[io::kDatumKey] = io::datumText(*datum);
   keepWarnings(buildWarnings(summary, job), info);
   if (summary.mapped) {
@@ -217,6 +224,10 @@ std::map<std::string, std::string> facts(const AllSettings& settings,
     if (summary.mapped->fixes > 0) info["fixes"] = std::to_string(summary.mapped->fixes);
   }
   if (summary.inventory) info["pose_sigma_m"] = io::fixed(summary.inventory->drives.sigma, 4);
+  // How the earlier drives were placed.
+  for (const char* key : {"poses", "loops", "fixes"})
+    if (const auto earlier = before.find(key); job.add && earlier != before.end())
+      info.insert(*earlier);
   return info;
 }
 
@@ -332,9 +343,6 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
   const auto paths = pathsOf(drives);
   addDrives(job, std::move(drives), sessions, summary);
   countSessions(sessions.added(), summary);
-  if (summary.scans == 0)
-    throw Error(job.inputs.front().string() + ": no usable scan, " +
-                std::to_string(summary.skipped.emptyScans) + " without a valid point");
   summary.map = sessions.build();
   if (summary.map.poles.empty()) throw Error(noPoles(summary, settings.map));
   summary.twins = countTwins(summary.map.poles);
@@ -345,7 +353,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
     summary.inventory->kept = kept.size();
     landmarks.poles.insert(landmarks.poles.end(), kept.begin(), kept.end());
   }
-  const io::PoleMapData map = io::mapData(landmarks, facts(settings, summary, job, datum));
+  const io::PoleMapData map = io::mapData(landmarks, facts(settings, summary, job, datum, base.map.info));
   io::AtomicFiles files;
   if (summary.mapped) writeTrajectories(job, *summary.mapped, paths);
   const report::MapView view = viewOf(job, summary, map, pathOf(sessions.added()));

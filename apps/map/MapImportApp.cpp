@@ -107,16 +107,17 @@ double radiusOf(const InventoryEntry& entry, const MapImportOptions& options) {
   return radius;
 }
 
-/// Middle of the box round the places, to a millionth of a degree.
+/// Middle of the box round the places, to a millionth of a degree; also across 180 degrees.
 io::Datum middleOf(const std::vector<Eigen::Vector2d>& lonLats) {
   Eigen::Vector2d low = lonLats.front(), high = low;
-  for (const Eigen::Vector2d& at : lonLats) {
+  for (Eigen::Vector2d at : lonLats) {
+    at.x() = lonLats.front().x() + std::remainder(at.x() - lonLats.front().x(), 360);
     low = low.cwiseMin(at);
     high = high.cwiseMax(at);
   }
   const Eigen::Vector2d middle = (low + high) / 2;
   io::Datum datum;
-  datum.longitude = std::round(middle.x() * 1e6) / 1e6;
+  datum.longitude = std::round(std::remainder(middle.x(), 360) * 1e6) / 1e6;
   datum.latitude = std::round(middle.y() * 1e6) / 1e6;
   return datum;
 }

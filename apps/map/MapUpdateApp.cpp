@@ -22,12 +22,12 @@ constexpr double kManyMoved = 0.05;          ///< share of the poles in view; mo
 
 void requireSamePlace(const MapUpdateCounts& counts, const std::filesystem::path& input,
                       const std::filesystem::path& map) {
-  if (counts.expectedOnMap < kEnoughExpected ||
-      static_cast<double>(counts.foundOnMap) >=
-          kLeastFound * static_cast<double>(counts.expectedOnMap))
+  const std::size_t expected = std::max(counts.expectedOnMap, counts.nearOnMap);
+  if (expected < kEnoughExpected ||
+      static_cast<double>(counts.foundOnMap) >= kLeastFound * static_cast<double>(expected))
     return;
   throw Error(input.string() + ": only " + std::to_string(counts.foundOnMap) + " of " +
-              std::to_string(counts.expectedOnMap) + " poles of " + map.string() +
+              std::to_string(expected) + " poles of " + map.string() +
               " in its view were found; are its poses of the same place and datum? A new place "
               "needs a new map, a map of pole-map import needs pole-map build --inventory");
 }
@@ -42,16 +42,6 @@ void requireDateOrder(const std::vector<SessionScan>& scans, const LandmarkMap& 
   throw Error(input.string() + ": is of " + io::dateText(now) + ", but the last session of " +
               file.string() + " of " + io::dateText(last) +
               ": sessions must come in the order of their days; see --date");
-}
-
-void requireScans(const MappingSession& session, const std::filesystem::path& input) {
-  if (!session.scans.empty()) return;
-  std::ostringstream message;
-  message << input.string() << ": no usable scan, " << session.skipped.emptyScans
-          << " without a valid point";
-  if (session.skipped.notOk > 0)
-    message << ", " << session.skipped.notOk << " at which the localizer was not ok";
-  throw Error(message.str());
 }
 
 /// Sessions of a map lie near it; one in another frame mostly does not.
@@ -151,7 +141,6 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& setti
   for (std::size_t i = 0; i < job.inputs.size(); ++i) {
     MappingSession session =
         loadMappingSession(job.session(i), settings, job.allowTruncated, progress);
-    requireScans(session, job.inputs[i]);
     requireNearby(session.path, map, job.inputs[i], job.map);
     if (!job.dates.empty()) setDate(session.scans, job.dates[i]);
     requireDateOrder(session.scans, map, job.inputs[i], job.map);

@@ -45,6 +45,16 @@ void requireCovered(const MappingSession& session, const SessionFiles& files,
               " s), at least half are needed; is it of this rawlog?");
 }
 
+void requireScans(const MappingSession& session, const std::filesystem::path& input) {
+  if (!session.scans.empty()) return;
+  std::ostringstream message;
+  message << input.string() << ": no usable scan, " << session.skipped.emptyScans
+          << " without a valid point";
+  if (session.skipped.notOk > 0)
+    message << ", " << session.skipped.notOk << " at which the localizer was not ok";
+  throw Error(message.str());
+}
+
 /// A doubtful detection is worth keeping where others can confirm it.
 SequenceOptions readingOf(const AllSettings& settings) {
   SequenceOptions options = settings.reading();
@@ -112,10 +122,12 @@ MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& 
     session.scans.push_back({frame.time, scan->pose, poles_robot, frame.visibilityRange,
                              frame.pose_robot_sensor, scan->covariance});
     session.path.push_back({frame.time, scan->pose});
+    session.numbers.push_back(i);
     session.motions.push_back(way);
     way = PoseWithCovariance();
   }
   requireCovered(session, files, sequence);
+  requireScans(session, files.input);
   return session;
 }
 
@@ -149,7 +161,6 @@ void writeViews(const MappingJob& job, const io::PoleMapData& map, const report:
 
 void keepWarnings(const std::vector<std::string>& warnings,
                   std::map<std::string, std::string>& info) {
-  info.erase("warnings");
   for (const std::string& warning : warnings)
     info["warnings"] += (info["warnings"].empty() ? "" : "; ") + warning;
 }

@@ -63,7 +63,8 @@ struct SkippedScans {
 /// \brief The scans of one drive that have a pose and a point.
 struct MappingSession {
   std::vector<SessionScan> scans;
-  std::vector<StampedPose2D> path;  ///< of the scans
+  std::vector<StampedPose2D> path;   ///< of the scans
+  std::vector<std::size_t> numbers;  ///< of the scans, in the rawlog
   /// Odometry to each scan from the one before that is here; none of the first, and where a motion
   /// on the way is not known.
   std::vector<std::optional<PoseWithCovariance>> motions;
@@ -74,8 +75,8 @@ struct MappingSession {
 /// \brief Reads a rawlog of scans or poles; doubtful detections down to `[map] min_confidence`.
 /// \param progress May be empty.
 /// \throws Error as readPoleSequence() and SessionPoses; when a motion is missing that stands for
-///         poses; when less than half of the scans have a pose; when the time of a scan is not
-///         later than that of the one before.
+///         poses; when less than half of the scans have a pose; when no scan is left; when the time
+///         of a scan is not later than that of the one before.
 MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& settings,
                                   bool allowTruncated, const ScanProgress& progress);
 
@@ -85,7 +86,7 @@ std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped);
 /// \brief Writes table and scene of a new map, when the job names them.
 void writeViews(const MappingJob& job, const io::PoleMapData& map, const report::MapView& view);
 
-/// \brief Puts warnings in the place of those in a map's info, key `warnings`; none without one.
+/// \brief Adds warnings to those in a map's info, key `warnings`.
 void keepWarnings(const std::vector<std::string>& warnings,
                   std::map<std::string, std::string>& info);
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 #include <unordered_map>
 
 #include <polemcl/core/common/Types.h>
@@ -100,7 +101,8 @@ class OsmReader {
       m_tags.clear();
       m_members.clear();
       m_line = here();
-      if (name == "node") beginNode(attributes);
+      m_isDeleted = isDeleted(attributes);
+      if (name == "node" && !m_isDeleted) beginNode(attributes);
     } else if (name == "tag") {
       const char *key = attribute(attributes, "k"), *value = attribute(attributes, "v");
       if (key && value) m_tags[key] = value;
@@ -119,7 +121,16 @@ class OsmReader {
     m_nodes[id] = m_place;
   }
 
+  /// By JOSM, before the upload, or in a history of OSM.
+  static bool isDeleted(const char** attributes) {
+    const char *action = attribute(attributes, "action"),
+               *visible = attribute(attributes, "visible");
+    return std::string_view(action ? action : "") == "delete" ||
+           std::string_view(visible ? visible : "") == "false";
+  }
+
   void end(const std::string& name) {
+    if (m_isDeleted) return;
     if (name == "node") {
       if (const char* kind = kindOf(m_tags, kNodes)) add(m_place, kind);
     } else if (name == "way") {
@@ -149,7 +160,7 @@ class OsmReader {
   std::filesystem::path m_file;
   XML_Parser m_parser;
   std::string m_problem, m_line;
-  bool m_isOsm = false;
+  bool m_isOsm = false, m_isDeleted = false;
   Eigen::Vector2d m_place = Eigen::Vector2d::Zero();
   Tags m_tags;
   std::vector<std::string> m_members;

@@ -22,7 +22,7 @@ LocalizationMap localizationMap(const PoleMap& map, const AllSettings& settings)
 }
 
 Localizer localizerOf(const PoleMap& map, const AllSettings& settings, std::uint32_t seed) {
-  const py::gil_scoped_release released;
+  const WithoutLock released;
   return {Settings(settings), localizationMap(map, settings), seed};
 }
 

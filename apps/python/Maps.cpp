@@ -9,6 +9,7 @@
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
 #include "core/common/PoleIndex.h"
+#include "core/mapping/DetectionToMap.h"
 #include "python/Arrays.h"
 #include "python/Classes.h"
 
@@ -28,12 +29,12 @@ MapPtr mapOf(const py::object& poles, const Facts& info) {
   MapContent content;
   content.map.poles = mapPolesFrom(poles);
   content.map.info = info;
-  const py::gil_scoped_release released;
+  const WithoutLock released;
   return std::make_shared<PoleMap>(std::move(content));
 }
 
 MapPtr load(const std::filesystem::path& file) {
-  const py::gil_scoped_release released;
+  const WithoutLock released;
   return std::make_shared<PoleMap>(readMapFile(file));
 }
 
@@ -49,7 +50,7 @@ void saveNpz(const PoleMap& map, const std::filesystem::path& file) {
 
 void save(const PoleMap& map, const std::filesystem::path& file) {
   if (file.extension() == ".npz") return saveNpz(map, file);
-  const py::gil_scoped_release released;
+  const WithoutLock released;
   writeMapFile(file, map.content);
 }
 
@@ -64,7 +65,7 @@ py::tuple nearest(const PoleMap& map, const py::object& places, double radius) {
   std::int64_t* index = indices.mutable_data();
   double* distance = distances.mutable_data();
   {
-    const py::gil_scoped_release released;
+    const WithoutLock released;
     for (std::size_t i = 0; i < xy.size(); i += 2) {
       const auto pole = map.index.nearest(xy[i], xy[i + 1], radius);
       *index++ = pole ? static_cast<std::int64_t>(pole->index) : -1;
@@ -87,7 +88,10 @@ class Builder {
     scan.poles_robot = detectionsFrom(poles);
     scan.drive = drive;
     if (!velocity.is_none()) deskew(scan.poles_robot, velocityFrom(velocity));
-    alone(m_mutex, [&] { m_scans.push_back(std::move(scan)); });
+    alone(m_mutex, [&] {
+      checkScan(scan.pose_map_robot, scan.poles_robot, "scan " + std::to_string(m_scans.size()));
+      m_scans.push_back(std::move(scan));
+    });
   }
 
   MapPtr build() {
@@ -116,7 +120,7 @@ class Likelihood {
     const std::vector<Pose2D> poses = posesFrom(posesArray);
     std::vector<double> result;
     {
-      const py::gil_scoped_release released;
+      const WithoutLock released;
       polemcl::logLikelihoods(poles, poses, m_index, m_options, result);
     }
     return toArray(result);

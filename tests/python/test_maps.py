@@ -1,6 +1,9 @@
 """PoleMap, PoleMapBuilder, PoleLikelihood: the maps of pole-map, searches and likelihoods by hand."""
 
 import gc
+import os
+import subprocess
+import sys
 import unittest
 
 import numpy as np
@@ -114,6 +117,30 @@ class MapPoles(unittest.TestCase):
             made.nearest((0, 0))
 
 
+# A thread that nobody waits for is inside the library when Python ends.
+ENDS_MEANWHILE = """
+import threading, time
+import numpy, polemcl
+poles = numpy.zeros(1000, polemcl.map_pole_type)
+poles["x"], poles["confidence"], poles["cov_xx"], poles["cov_yy"] = range(1000), 1, 1, 1
+street, places = polemcl.PoleMap(poles), numpy.zeros((20000, 2))
+def ask():
+    while True:
+        street.nearest(places)
+threading.Thread(target=ask, daemon=True).start()
+time.sleep(0.3)
+"""
+
+
+class Processes(unittest.TestCase):
+    def test_end_while_a_thread_is_busy(self):
+        paths = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+        for _ in range(5):
+            ended = subprocess.run([sys.executable, "-c", ENDS_MEANWHILE], env=paths, timeout=60,
+                                   capture_output=True, text=True, check=False)
+            self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
+
 class BuiltMaps(unittest.TestCase):
     def test_are_those_of_pole_map_build(self):
         extractor = polemcl.PoleExtractor(street.CONFIG)
@@ -148,6 +175,18 @@ class BuiltMaps(unittest.TestCase):
             builder.add((1, 2), made_detections([(1, 2)]))
         with self.assertRaisesRegex(polemcl.Error, "'points' is missing"):
             builder.add((1, 2, 3), made_poles([(1, 2)]))
+
+    def test_refuse_a_bad_scan_and_go_on(self):
+        builder = polemcl.PoleMapBuilder(settings={"map.min_count": 1})
+        seen = made_detections([(10, 5)])
+        for i in range(4):
+            builder.add((i, 0, 0), moved(seen, -i))
+        with self.assertRaisesRegex(polemcl.Error, "the pose of scan 4 is not finite"):
+            builder.add((np.nan, 0, 0), seen)
+        seen["x"] = np.nan
+        with self.assertRaisesRegex(polemcl.Error, "pole 0 of scan 4 has"):
+            builder.add((4, 0, 0), seen)
+        self.assertEqual(len(builder.build()), 1)
 
 
 def moved(poles, x):

@@ -58,17 +58,21 @@ inline std::vector<std::string> turnOfVlp16(const std::vector<StreetPole>& poles
 }
 
 /// Ethernet, IPv4 and UDP headers before each packet; checksums are left out, as many recorders do.
-inline std::string pcapFile(const std::vector<std::string>& packets, int port) {
+/// \param senders 0.0.0.x, in turns.
+inline std::string pcapFile(const std::vector<std::string>& packets, int port,
+                            const std::vector<char>& senders = {0}) {
   std::string file;
   appendBytes(file, std::uint32_t{0xA1B2C3D4});
   for (const int half : {2, 4, 0, 0, 0, 0, 0xFFFF, 0, 1, 0})
     appendBytes(file, static_cast<std::uint16_t>(half));
-  for (const std::string& packet : packets) {
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    const std::string& packet = packets[i];
     std::string head(42, '\0');
     head[12] = 8;     // IPv4
     head[14] = 0x45;  // version, length of the header
     head[22] = 64;
     head[23] = 17;  // UDP
+    head[29] = senders[i % senders.size()];
     head[36] = static_cast<char>(port >> 8);
     head[37] = static_cast<char>(port);
     const auto size = static_cast<std::uint32_t>(head.size() + packet.size());

@@ -1,10 +1,9 @@
-#include <cmath>
-
 #include <polemcl/localizer/MapBuilder.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
+#include "core/mapping/DetectionToMap.h"
 #include "core/mapping/MapAccumulator.h"
 #include "io/map/PoleMapFile.h"
 #include "localizer/PointsObservation.h"
@@ -40,8 +39,7 @@ struct MapBuilder::Impl {
 
 void MapBuilder::Impl::add(const CObservationPoles& observation, const Pose2D& pose_map_robot) {
   const PoleScan frame = frameOf(observation, {});
-  if (!std::isfinite(pose_map_robot.x + pose_map_robot.y + pose_map_robot.yaw))
-    throw Error("pose of scan " + std::to_string(path.size()) + ": x, y and yaw must be finite");
+  checkScan(pose_map_robot, frame.poles_robot, "scan " + std::to_string(path.size()));
   if (!path.empty() && !(frame.time > path.back().time))
     throw Error("time does not increase: scan " + std::to_string(path.size()) + " at " +
                 std::to_string(frame.time) + " s comes after one at " +
@@ -82,6 +80,8 @@ std::vector<MapPole> MapBuilder::poles() const {
 }
 
 void MapBuilder::save(const std::filesystem::path& file) const {
+  if (file.extension() != ".polemap")
+    throw Error(file.string() + ": the name must end in .polemap");
   const MapAccumulator map = m_impl->mapped();
   const PoleMapResult result = map.build();
   if (result.poles.empty())

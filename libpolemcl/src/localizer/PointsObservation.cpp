@@ -4,13 +4,13 @@
 
 #include <string>
 
+#include "core/common/DetectionCheck.h"
+
 namespace polemcl {
 
 mrpt::obs::CObservationPointCloud observationOf(double time, const PointsView& points) {
-  constexpr double kLatest = 1e11;  // s; MRPT's clock ends some centuries later
-  if (!(time >= 0 && time < kLatest))
-    throw Error("a scan at " + std::to_string(time) +
-                " s: the time of points must be at least 0 and below 1e11 s");
+  if (!isTimeInSeconds(time))
+    throw Error("a scan at " + std::to_string(time) + " s: " + kTimeAllowed);
   if (points.size > 0 && !(points.x && points.y && points.z))
     throw Error("points without x, y or z: each must be an array of " +
                 std::to_string(points.size) + " numbers");

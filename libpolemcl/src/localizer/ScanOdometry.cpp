@@ -1,8 +1,10 @@
 #include "localizer/ScanOdometry.h"
 
 #include <cmath>
+#include <string>
 
 #include "core/common/Covariance.h"
+#include "core/common/DetectionCheck.h"
 
 namespace polemcl {
 namespace {
@@ -11,8 +13,10 @@ namespace {
 constexpr double kClockSet = 1;
 
 void requireFinite(double time, const Pose2D& pose) {
-  for (const double value : {time, pose.x, pose.y, pose.yaw})
-    if (!std::isfinite(value)) throw Error("odometry: time, x, y and yaw must be finite");
+  if (!isTimeInSeconds(time))
+    throw Error("odometry at " + std::to_string(time) + " s: " + kTimeAllowed);
+  if (!std::isfinite(pose.x + pose.y + pose.yaw))
+    throw Error("odometry: x, y and yaw must be finite");
 }
 
 }  // namespace

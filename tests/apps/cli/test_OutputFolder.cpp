@@ -13,7 +13,7 @@ namespace {
 class OutputFolderTest : public testing::Test {
  protected:
   OutputFolder open(const std::string& name) {
-    return OutputFolder(folder / name, "a drive", {"mark", "data"}, "mark");
+    return OutputFolder(folder / name, "a drive", {"mark", "data", "scans", "scans/[0-9]*.bin"}, "mark");
   }
   /// The message of the refusal, empty when accepted.
   std::string refusal(const std::string& name) {
@@ -122,6 +122,15 @@ TEST_F(OutputFolderTest, RefusesAFolderWithForeignFiles) {
   writeText(folder / "out" / "thesis.tex", "years of work");
   EXPECT_NE(refusal("out").find("thesis.tex"), std::string::npos) << refusal("out");
   EXPECT_TRUE(fs::exists(folder / "out" / "thesis.tex"));
+}
+
+TEST_F(OutputFolderTest, RefusesForeignFilesInASubfolder) {
+  writeText(folder / "out" / "mark", "old");
+  writeText(folder / "out" / "scans" / "000001.bin", "old");
+  EXPECT_EQ(refusal("out"), "");
+  writeText(folder / "out" / "scans" / "notes.txt", "by hand");
+  EXPECT_NE(refusal("out").find("scans/notes.txt"), std::string::npos) << refusal("out");
+  EXPECT_TRUE(fs::exists(folder / "out" / "scans" / "notes.txt"));
 }
 
 TEST_F(OutputFolderTest, RefusesAFolderWithoutTheMarker) {

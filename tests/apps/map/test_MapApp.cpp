@@ -411,6 +411,11 @@ TEST_F(MapApp, RefusesWhenNoScanHasAPoint) {
   for (std::size_t i : {0, 1}) writeBin(folder / "in" / "velodyne" / scanName(i), {{0, 0, 0, 0}});
   import("in", false);
   expectFailure(run({"in"}), {"in.rawlog", "no usable scan"});
+  drive("seen", 12);
+  expectFailure(run({"seen", "in"}), {"in.rawlog", "no usable scan, 2 without a valid point"});
+  expectFailure(runProgram(mapMain, {"build", "--config", config(), "--output", at("street.polemap"),
+                                     "--input", at("seen.rawlog"), at("in.rawlog")}),
+                {"in.rawlog", "no usable scan"});
 }
 
 TEST_F(MapApp, RefusesATruncatedRawlogUnlessAllowed) {

@@ -126,6 +126,24 @@ TEST_F(MapImportApp, LampsTreesSignsAndLightsOfOpenStreetMap) {
   EXPECT_EQ(map().poles.size(), 2u);
 }
 
+TEST_F(MapImportApp, WhatWasDeletedIsLeftOut) {
+  const char* const osm = R"(<osm version="0.6">
+ <node id="1" lat="52.0" lon="13.0"><tag k="highway" v="street_lamp"/></node>
+ <node id="2" action="delete" lat="52.0" lon="13.01"><tag k="highway" v="street_lamp"/></node>
+ <node id="3" visible="false"><tag k="highway" v="street_lamp"/></node>
+ <way id="9" action="delete"><nd ref="1"/><tag k="type" v="pole"/></way>
+</osm>)";
+  ASSERT_EQ(import("a.osm", osm, {"--datum", "52,13"}).code, 0);
+  EXPECT_EQ(map().poles.size(), 1u);
+}
+
+TEST_F(MapImportApp, TheOriginLiesBetweenPolesOnBothSidesOf180Degrees) {
+  ASSERT_EQ(import("a.csv", "lon,lat\n179.9999,-16.8\n-179.9997,-16.8\n").code, 0);
+  ASSERT_EQ(map().poles.size(), 2u);
+  EXPECT_NEAR(map().poles[0].x, -21.3, 0.1);
+  EXPECT_NEAR(map().poles[1].x, 21.3, 0.1);
+}
+
 TEST_F(MapImportApp, OptionsThatTheInventoryHasNoUseForAreRefused) {
   EXPECT_HAS(failure("a.osm", s_osm, {"--crs", "EPSG:25833"}), "a.osm: places of OpenStreetMap");
   EXPECT_HAS(failure("a.osm", s_osm, {"--separator", ";"}), "are for CSV files");

@@ -41,9 +41,10 @@ std::vector<SessionScan> drive(double fromX, double toX, double y,
 std::vector<Eigen::Vector2d> somePoles() {
   std::mt19937 random(3);
   std::vector<Eigen::Vector2d> poles;
-  for (int i = 0; i < 60; ++i)
-    poles.emplace_back(static_cast<double>(random() % 1000) / 5,
-                       static_cast<double>(random() % 300) / 5 - 20);
+  for (int i = 0; i < 60; ++i) {
+    const double y = static_cast<double>(random() % 300) / 5 - 20;
+    poles.emplace_back(static_cast<double>(random() % 1000) / 5, y);
+  }
   return poles;
 }
 
@@ -166,6 +167,20 @@ TEST(MapAccumulator, WhatIsLeftOutChangesNothing) {
               added.scans.front().visibilityRange.empty());
   ASSERT_GT(map.build().poles.size(), 20u);
   expectSame(map.build().poles, other.build().poles);
+}
+
+TEST(MapAccumulator, ASessionOfWhichNothingIsUsedChangesNothing) {
+  const auto poles = somePoles();
+  PoleMapOptions options = mapping(10);
+  options.minCount = 4;
+  MapAccumulator map(options, {});
+  auto first = drive(0, 80, 0, poles);
+  for (auto& scan : first)
+    for (auto& pole : scan.poles_robot) pole.confidence = 0.25;
+  map.add("one", first);
+  const auto before = map.build().poles;
+  EXPECT_EQ(map.add("two", drive(0, 80, 1, poles)).usedCount(), 0u);
+  expectSame(map.build().poles, before);
 }
 
 TEST(MapAccumulator, GoesOnAsIfItHadNeverStopped) {

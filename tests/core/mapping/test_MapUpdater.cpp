@@ -289,8 +289,33 @@ TEST(MapUpdater, TwoKeptPolesInOneGateBecomeOne) {
   std::vector<SessionScan> scans = drive({{10, 5}});
   const std::vector<SessionScan> others = drive({{10.3, 5}});
   for (std::size_t i = 0; i < scans.size(); i += 2) scans[i] = others[i];
-  const LandmarkMap map = updatedBy(kept({{10, 5}, {10.3, 5}}), scans);
+  MapUpdateCounts counts;
+  const LandmarkMap map = updateMap(kept({{10, 5}, {10.3, 5}}), scans, {}, {}, &counts);
   EXPECT_EQ(map.poles.size(), 1u);
+  EXPECT_EQ(counts.left, 1u);
+}
+
+TEST(MapUpdater, ANeighbourThatIsNotSeenStays) {
+  // 0.42 m apart, both mapped; the far one is out of the range in which a pole is expected.
+  MapUpdateOptions upkeep;
+  upkeep.range = 5.2;
+  const LandmarkMap before = kept({{10, 5}, {10, 5.42}});
+  MapUpdateCounts counts;
+  const LandmarkMap map = updateMap(before, drive({{10, 5}}), {}, upkeep, &counts);
+  EXPECT_EQ(map.poles.size(), 2u);
+  EXPECT_EQ(counts.left, 0u);
+}
+
+TEST(MapUpdater, CountsPolesNearToScansThatKnowNotHowFarTheySee) {
+  std::vector<SessionScan> scans = drive({{10, 5}});
+  MapUpdateCounts counts;
+  updatedBy(kept({{10, 5}, {30, -6}, {30, 12}}), scans, &counts);
+  EXPECT_EQ(counts.nearOnMap, 0u);
+  for (SessionScan& scan : scans) scan.visibilityRange.clear();
+  updatedBy(kept({{10, 5}, {30, -6}, {30, 12}}), scans, &counts);
+  EXPECT_EQ(counts.nearOnMap, 2u);  // within half of 20 m
+  EXPECT_EQ(counts.expectedOnMap, 1u);
+  EXPECT_EQ(counts.foundOnMap, 1u);
 }
 
 TEST(MapUpdater, WhatIsOutOfReachIsLeftAlone) {

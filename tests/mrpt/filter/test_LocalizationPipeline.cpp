@@ -353,13 +353,13 @@ TEST_F(PoleLocalizationTest, FarOutliersCountByTheWay) {
     auto poles = std::make_shared<CPoleMap>(*map->poles);
     poles->likelihoodOptions.farOutlier = farOutlier;
     LocalizationPipeline localization({poles}, options, 1);
-    localization.start(atTruth());
-    PoleScan frame = frames[0];
-    frame.poles_robot.clear();  // the first scan would count in full
-    localization.step(frame);
+    StartOptions start = atTruth();
+    start.radius = start.heading = 0;  // the first scan counts in full, but alike for all
+    localization.start(start);
+    localization.step(frames[0]);
     Pose2D pose;
     for (std::size_t i = 1; i < frames.size(); ++i) {
-      frame = frames[stands ? 0 : i];
+      PoleScan frame = frames[stands ? 0 : i];
       frame.time = frames[i].time;
       if (stands) frame.motion->mean = {};
       pose = localization.step(frame).estimate->mean;

@@ -295,4 +295,42 @@ TEST_F(PoleLocalizationFaults, AStartFarFromAllPolesIsRefused) {
   localization.start(start);
 }
 
+/// The scan at which a vehicle stands, again and again.
+std::vector<PoleScan> standing(const PoleScan& at, std::size_t count) {
+  std::vector<PoleScan> scans(count, at);
+  for (std::size_t i = 0; i < count; ++i) {
+    scans[i].time = at.time + 0.1 * static_cast<double>(i);
+    // What wheels that stand are given by [motion]: 5 mm and 0.1 degrees.
+    scans[i].motion = PoseWithCovariance{
+        {}, Eigen::Vector3d(2.5e-5, 2.5e-5, 3e-6).asDiagonal().toDenseMatrix()};
+  }
+  return scans;
+}
+
+TEST_F(PoleLocalizationFaults, AParkedVehicleKeepsItsPose) {
+  drive(40);
+  LocalizationPipeline localization = started();
+  for (const PoleScan& frame : frames) localization.step(frame);
+  std::vector<PoleScan> scans = standing(frames.back(), 1201);
+  for (std::size_t i = 1; i < scans.size(); ++i) {
+    const LocalizationUpdate update = localization.step(scans[i]);
+    ASSERT_EQ(update.health.state, HealthState::ok) << i << ' ' << name(update.health.reason);
+    ASSERT_LT(update.health.spread, 0.1) << i;
+    ASSERT_LT(error(update, frames.size() - 1), 0.1) << i;
+  }
+}
+
+TEST_F(PoleLocalizationFaults, AScanWithoutPolesAtTheStartIsNoFirstScan) {
+  drive(40);
+  std::vector<PoleScan> scans = standing(frames.front(), 30);
+  scans[0].poles_robot.clear();
+  LocalizationPipeline localization = started();
+  LocalizationUpdate update;
+  for (std::size_t i = 0; i < 2; ++i) update = localization.step(scans[i]);
+  EXPECT_LT(error(update, 0), 0.1);
+  for (std::size_t i = 2; i < scans.size(); ++i) update = localization.step(scans[i]);
+  EXPECT_LT(error(update, 0), 0.1);
+  EXPECT_LT(update.health.spread, 0.1);
+}
+
 }  // namespace polemcl::test_localization_pipeline_faults

@@ -225,6 +225,17 @@ TEST(PoleParticleFilter, FramesWithoutPolesOnlyPredict) {
   }
 }
 
+/// Particles far apart are tempered; without poles there is nothing to temper.
+TEST(PoleParticleFilter, FramesWithoutPolesDoNotSpreadParticles) {
+  PoleParticleFilter localizer(smallMap(), {}, 1);
+  localizer.start(at({0, 0, 0}, 2, 0.2));
+  const double before = localizer.step(emptyFrame(0)).covariance(0, 0);
+  for (int i = 1; i <= 30; ++i) localizer.step(emptyFrame(i, PoseWithCovariance()));
+  EXPECT_NEAR(localizer.step(emptyFrame(31, PoseWithCovariance())).covariance(0, 0), before,
+              0.01 * before);
+  EXPECT_EQ(localizer.report().temperingStages, 0u);
+}
+
 TEST(PoleParticleFilter, BestShareIsTheMeanOfTheBest) {
   FilterOptions options = still();
   options.particles = 10;

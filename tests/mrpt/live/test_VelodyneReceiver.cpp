@@ -214,6 +214,22 @@ TEST_F(VelodyneReceiverTest, IgnoresAndCountsWhatIsNotOfTheLidar) {
   EXPECT_EQ(observed(), 2u);
 }
 
+TEST_F(VelodyneReceiverTest, OfTwoLidarsOnOnePortOneIsUsed) {
+  const std::string ini = velodyne("pcap_read_fast = true\nprocess_rate = 1e6\n");
+  const Packets packets = drive(4, 1000);
+  Packets both;
+  for (std::size_t i = 0; i < packets.size(); ++i)
+    both.insert(both.end(), {packets[i], packets[(i + 30) % packets.size()]});
+  writeText(folder / "a.pcap", pcapFile(both, portIn(ini), {1, 2}));
+  const std::string pcap = "pcap_input = " + (folder / "a.pcap").string();
+  const auto played = start(ini + pcap), other = start(ini + "device_ip = 0.0.0.2\n" + pcap);
+  ASSERT_TRUE(waitFor([&] { return ended() == 2; }));
+  EXPECT_EQ(ignored, 2 * packets.size());
+  EXPECT_EQ(lost, 0u);
+  ASSERT_EQ(observed(), 2u + 3u);
+  EXPECT_EQ(scans()[0]->scan_packets.size(), 75u);
+}
+
 /// Over the end of an hour; two packets, then one in another turn. A step of the clock and a
 /// long pause are no losses.
 TEST_F(VelodyneReceiverTest, CountsLostPackets) {

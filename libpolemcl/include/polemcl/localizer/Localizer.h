@@ -91,6 +91,7 @@ class POLEMCL_EXPORT Localizer {
                           const Pose2D& odometry);
 
   /// \brief The same from poles with a motion whose covariance is known, of one or several LiDARs.
+  /// Not to be mixed with those above: they would count its motion again.
   LocalizationUpdate step(const PoleScan& frame);
 
   /// \name Where scans and odometry come by themselves, as from sensors
@@ -99,7 +100,8 @@ class POLEMCL_EXPORT Localizer {
   static constexpr double keptOdometry = 60;
   /// \brief A reading of the odometry, at 1 Hz or more. One that is not later than the one before
   /// is left out; after a second of such readings the clock was set, and the odometry begins anew.
-  /// Readings are kept for `keptOdometry`. \throws Error when time or pose is not finite.
+  /// Readings are kept for `keptOdometry`. \throws Error when the time is not in [0, 1e11) s, or
+  /// the pose is not finite.
   void addOdometry(const OdometryReading& reading);
   /// \brief Whether there is odometry at `time` or later: the scan of that time can be taken.
   bool hasOdometry(double time) const;

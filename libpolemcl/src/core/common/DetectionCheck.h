@@ -1,6 +1,6 @@
 #pragma once
 /// \file DetectionCheck.h
-/// \brief Which detections can be used.
+/// \brief Which detections and times can be used.
 
 #include <polemcl/core/common/Types.h>
 
@@ -10,5 +10,12 @@ namespace polemcl {
 /// All numbers must be finite, x and y at most PoleIndex::farthest, the confidence in [0, 1], the
 /// covariance one by isCovariance().
 const char* faultOf(const PoleDetection& pole);
+
+/// \brief Whether a time can be one in seconds: at least 0 and below 1e11, as MRPT's clock. One in
+/// nanoseconds, or NaN, is not.
+constexpr bool isTimeInSeconds(double time) {
+  return time >= 0 && time < 1e11;
+}
+constexpr const char* kTimeAllowed = "times are seconds, at least 0 and below 1e11";
 
 }  // namespace polemcl

@@ -50,7 +50,7 @@ PathSections passSections(const std::vector<Pose2D>& poses,
     for (std::size_t k = 0; k < marks.ends(); ++k)
       if (used.empty() || used[middles[k]])
         result.occupied.push_back({path, k, {middles[k]}, middles[k]});
-    result.count += marks.ends();
+    result.count = result.occupied.size();
     result.length += travelled;
     middles.clear();
     ++path;
@@ -79,12 +79,13 @@ PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::
   PathSections result;
   Odometer odometer(step);
   std::uint32_t path = 0;
-  std::size_t sectionsBefore = 0;  // of the paths completed
   double lengthBefore = 0, nearest = 0;
+  std::size_t next = 0;  // section of this path after that of the pose before
+  const auto isUsed = [&](std::size_t i) { return used.empty() || used[i]; };
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (i > 0 && drives[i] != drives[i - 1]) {
       ++path;
-      sectionsBefore = result.count;
+      next = 0;
       lengthBefore = result.length;
       odometer = Odometer(step);
     }
@@ -92,12 +93,16 @@ PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::
     // Rounding may leave whole numbers of sections slightly too small.
     const auto index = static_cast<std::size_t>(std::floor(travelled + 1e-9));
     const double fromMiddle = std::abs(travelled - (static_cast<double>(index) + 0.5));
-    result.count = sectionsBefore + index + 1;
     result.length = lengthBefore + travelled * sectionLength;
-    if (!used.empty() && !used[i]) continue;
+    if (index > next && isUsed(i) && isUsed(i - 1)) result.count += index - next;
+    next = index + 1;
+    if (!isUsed(i)) continue;
     const bool opens = result.occupied.empty() || result.occupied.back().path != path ||
                        result.occupied.back().index != index;
-    if (opens) result.occupied.push_back({path, index, {}, i});
+    if (opens) {
+      result.occupied.push_back({path, index, {}, i});
+      ++result.count;
+    }
     PathSection& section = result.occupied.back();
     if (opens || fromMiddle < nearest - 1e-9) {
       nearest = fromMiddle;

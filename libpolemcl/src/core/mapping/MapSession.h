@@ -15,6 +15,7 @@ namespace polemcl {
 struct SessionPole {
   std::vector<std::uint32_t> observations;  ///< indices into Session::observations(), of all ranges
   ExistenceLikelihood likelihood;           ///< within range only
+  bool wasNear = false;  ///< a scan without visibility ranges came within half of that range
 };
 
 /// \brief "the scan at 12.300000 s", for messages: scans may have been left out before.

@@ -72,8 +72,12 @@ class Update {
   void applyLikelihoods();
   void movePlaces();
   bool movePlace(LandmarkRecord& record, const MapPole& seen) const;
+  bool entersMap(const LandmarkRecord& record) const {
+    return record.history.existence >= kPresent &&
+           record.pole.count >= static_cast<std::uint32_t>(m_options.minSeen);
+  }
   void dropGhosts();
-  void dropDoubles();
+  void dropDoubles(const std::vector<Eigen::Vector2d>& before);
   bool seenTogether(std::size_t a, std::size_t b) const;
   std::set<std::uint32_t> scansOf(std::size_t pole) const;
   void decidePresence();
@@ -118,6 +122,7 @@ void Update::applyLikelihoods() {
     const SessionPole& today = m_session.poles()[i];
     const ExistenceLikelihood& likelihood = today.likelihood;
     m_counts.expectedOnMap += record.present && likelihood.found() + likelihood.missed() > 0;
+    m_counts.nearOnMap += record.present && today.wasNear;
     m_counts.foundOnMap += record.present && likelihood.found() > 0;
     record.history.existence = updated(record.history.existence, likelihood.logRatio());
     record.history.seen += likelihood.found();
@@ -169,7 +174,7 @@ void Update::movePlaces() {
   }
 }
 
-/// Drops a pole that was never found if a new, certain pole stands beside it.
+/// Drops a pole that was never found if a new pole that enters the map stands beside it.
 void Update::dropGhosts() {
   const KdTree2D tree(centresOf(m_poles));
   std::vector<PointHit> near;
@@ -178,7 +183,7 @@ void Update::dropGhosts() {
     if (!m_session.poles()[i].observations.empty() || likelihood.missed() == 0) continue;
     tree.within(m_poles[i].pole.x, m_poles[i].pole.y, kGhost, near);
     m_gone[i] = std::any_of(near.begin(), near.end(), [&](const PointHit& hit) {
-      return hit.index >= m_known && m_poles[hit.index].history.existence >= kPresent;
+      return hit.index >= m_known && entersMap(m_poles[hit.index]);
     });
     m_counts.moved += m_gone[i] && m_poles[i].present;
   }
@@ -200,8 +205,10 @@ bool Update::seenTogether(std::size_t a, std::size_t b) const {
          m_mapping.apartShare * static_cast<double>(std::max(first.size(), second.size()));
 }
 
-/// Drops the pole seen less often today when two poles have moved into one gate.
-void Update::dropDoubles() {
+/// Drops the pole seen less often today when two poles have moved into one gate. Of two poles that
+/// the map had there already, both must have been seen.
+/// \param before Places of the known poles.
+void Update::dropDoubles(const std::vector<Eigen::Vector2d>& before) {
   const KdTree2D tree(centresOf(m_poles));
   std::vector<PointHit> near;
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
@@ -211,8 +218,12 @@ void Update::dropDoubles() {
       if (j <= i || m_gone[i] || m_gone[j]) continue;
       const std::size_t a = m_session.poles()[i].observations.size(),
                         b = m_session.poles()[j].observations.size();
-      if (a + b == 0 || seenTogether(i, j)) continue;
-      m_gone[a < b ? i : j] = true;
+      const bool wereHere =
+          j < m_known && (before[i] - before[j]).norm() < m_mapping.mergeDistance;
+      if (a + b == 0 || (wereHere && std::min(a, b) == 0) || seenTogether(i, j)) continue;
+      const std::size_t gone = a < b ? i : j;
+      m_gone[gone] = true;
+      m_counts.left += gone < m_known && m_poles[gone].present;
     }
   }
 }
@@ -223,9 +234,8 @@ void Update::decidePresence() {
     LandmarkRecord& record = m_poles[i];
     const bool was = record.present;
     const double existence = record.history.existence;
-    const bool seenEnough = record.pole.count >= static_cast<std::uint32_t>(m_options.minSeen);
     if (existence < kAbsent) record.present = false;
-    if (existence >= kPresent && seenEnough) record.present = true;
+    if (entersMap(record)) record.present = true;
     m_counts.entered += record.present && !was && !m_gone[i];
     m_counts.left += was && !record.present && !m_gone[i];
     if (m_gone[i]) continue;
@@ -242,9 +252,10 @@ LandmarkMap Update::run() {
   m_session.observe(m_poles);
   m_gone.assign(m_poles.size(), false);
   applyLikelihoods();
+  const auto before = centresOf(m_poles);
   movePlaces();
   dropGhosts();
-  dropDoubles();
+  dropDoubles(before);
   decidePresence();
   LandmarkMap result;
   for (std::size_t i = 0; i < m_poles.size(); ++i)

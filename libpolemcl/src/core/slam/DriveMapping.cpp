@@ -171,6 +171,7 @@ void DriveMapping::layOnFixes() {
 bool DriveMapping::closeLoops() {
   track();
   adjust(ties(), Covariance::known);
+  track();  // the search numbers the tracks by these poses
   m_loops = findLoops(m_scans, m_state, m_tracks, m_knots, m_frames);
   const bool connected = connectFrames(m_loops, m_tracks, m_frames, m_state);
   for (bool changed = !m_loops.empty(); changed;) {

@@ -149,7 +149,7 @@ void LocalizationPipeline::initializeGlobally(const std::optional<SearchArea>& a
   m_searchedAt = 0;
   m_matches.clear();
   m_started = true;
-  m_hasPose = m_stepped = m_mistrusted = false;
+  m_hasPose = m_stepped = m_hadPoles = m_mistrusted = false;
 }
 
 LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
@@ -170,6 +170,8 @@ LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
   if (m_stepped) covariance += frame.motion->covariance;
   m_submap.add(motion, covariance, frame.poles_robot);
   m_tracked = frame;
+  m_isFirst = !m_hadPoles;
+  m_hadPoles |= !frame.poles_robot.empty();
   m_tracked.poles_robot = polesForFilter(motion, covariance, frame.poles_robot);
 
   update.poles = frame.poles_robot.size();
@@ -213,9 +215,9 @@ std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
   if (tracking.cadence == Cadence::section) return m_localMaps.add(motion, poles_robot);
   if (!tracking.average) return poles_robot;
   // Poles of a scan far from the one before had no chance to be seen twice.
-  if (std::hypot(motion.x, motion.y) > sparseMetres) m_tracks.clear();
+  if (m_isFirst || std::hypot(motion.x, motion.y) > sparseMetres) m_tracks.clear();
   m_tracks.add(motion, covariance, poles_robot);
-  // The first scan is used as it is: there is nothing to average yet.
+  // The first scan with poles is used as it is: there is nothing to average yet.
   if (m_tracks.frames() == 1) return poles_robot;
   return m_tracks.take(static_cast<std::uint32_t>(tracking.minHits), tracking.every);
 }
@@ -252,8 +254,8 @@ PoleScan LocalizationPipeline::checkedMotion(const PoleScan& frame, Localization
 
 NewShares LocalizationPipeline::newShares(double metres) const {
   NewShares shares;
-  // No frame before the first one said anything by chance.
-  if (m_stepped) shares.chance = std::min(1.0, metres / decorrelationMetres);
+  // No frame before the first one with poles said anything by chance.
+  if (!m_isFirst) shares.chance = std::min(1.0, metres / decorrelationMetres);
   const double apart = m_options.tracking.average ? m_options.tracking.every : 0;
   if (m_map.coarse) shares.all = std::min(1.0, std::max(metres, apart) / coarseMetres);
   return shares;

@@ -161,6 +161,8 @@ class POLEMCL_EXPORT LocalizationPipeline {
   std::vector<PoleMatch> m_matches;
   PoseWithCovariance m_estimate;
   bool m_hasPose = false, m_started = false, m_stepped = false;
+  bool m_hadPoles = false;    ///< in an earlier frame
+  bool m_isFirst = false;     ///< no frame before this one had poles
   bool m_mistrusted = false;  ///< the submap was restarted because poles did not match
   std::size_t m_searches = 0;
   double m_time = 0;        ///< time of the last frame, s

@@ -72,9 +72,10 @@ mrpt::obs::CActionCollection::Ptr makeMotionAction(const PoseWithCovariance& mot
 
 void requireStep(const PoleScan& scan, std::optional<double> before) {
   const std::string when = std::to_string(scan.time) + " s";
-  if (!std::isfinite(scan.time) || (before && scan.time <= *before))
+  if (!isTimeInSeconds(scan.time)) throw Error("a scan at " + when + ": " + kTimeAllowed);
+  if (before && scan.time <= *before)
     throw Error("time does not increase: a scan at " + when + " comes after one at " +
-                std::to_string(before.value_or(0)) + " s");
+                std::to_string(*before) + " s");
   for (std::size_t i = 0; i < scan.poles_robot.size(); ++i)
     if (const char* fault = faultOf(scan.poles_robot[i]))
       throw Error("scan at " + when + ": pole " + std::to_string(i) + " has " + fault);

@@ -211,6 +211,7 @@ void PoleParticleFilter::predict(const mrpt::obs::CActionCollection& action,
 
 void PoleParticleFilter::update(const CObservationPoles& scan,
                                 const CParticleFilter::TParticleFilterOptions& mrptOptions) {
+  if (scan.poles.empty()) return;  // says nothing: tempering would only spread the particles
   m_report.poles += scan.poles.size();
   LikelihoodOptions likelihood = m_map->likelihoodOptions;
   likelihood.farOutlier = std::pow(likelihood.farOutlier, m_newShares.chance);

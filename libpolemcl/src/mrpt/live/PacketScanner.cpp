@@ -59,6 +59,7 @@ void PacketScanner::take(const UdpPacket& packet) {
     return;
   }
   ++m_counts.packets;
+  m_source.keepTo(packet.sender);
   countLost(bytes);
   const double turn = m_packets->turn(bytes);
   for (int i = 0; i < m_packets->columns(bytes); ++i) {

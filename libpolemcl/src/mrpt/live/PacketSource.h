@@ -26,7 +26,8 @@ struct LidarPort {
 ///
 /// A file is played at the pace of its recording; packets count as arriving when they are played.
 /// Keys: `address`, the IPv4 address to listen at (default: 127.0.0.1, this computer only; 0.0.0.0:
-/// from anywhere), `device_ip`, the only sender, `pcap_input`, `pcap_read_once` (default: true) and
+/// from anywhere), `device_ip`, the only sender (default: that of the first measurements),
+/// `pcap_input`, `pcap_read_once` (default: true) and
 /// `pcap_read_fast` (one packet for each call).
 class PacketSource {
  public:
@@ -39,6 +40,11 @@ class PacketSource {
   /// \param take With the index of the port. \throws Error for a file that is damaged, or has no
   /// packet to the first port.
   void receive(const Take& take);
+  /// \brief Packets of measurements come from here, so others are ignored, unless `device_ip` says
+  /// more: scans of two LiDARs on one port are not mixed.
+  void keepTo(const in_addr& sender) {
+    if (!m_device) m_device = sender;
+  }
   /// \brief Whether all packets of the file have been taken.
   bool atEnd() const { return m_atEnd; }
   /// \brief Whether it listens without `address`.

@@ -139,7 +139,7 @@ void SensorThread::tellPackets(const SensorEvents& events) {
   if (ignored > 0 && m_told.ignored == 0)
     events.warned(place +
                   "a packet is not of this LiDAR, by its size or sender: it is ignored, and so are "
-                  "others");
+                  "others; of two LiDARs on one port, device_ip says which is meant");
   if (lost > 0 && m_told.lost == 0)
     events.warned(place + "packets are missing, the first before packet " +
                   std::to_string(counts.packets) +

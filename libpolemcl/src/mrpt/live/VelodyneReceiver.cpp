@@ -73,8 +73,10 @@ void VelodyneReceiver::doProcess() {
   m_state = ssWorking;
   m_source.receive([this](std::size_t port, const UdpPacket& packet) {
     if (port == 0) {
-      if (const auto data = accepted<Scan::TVelodyneRawPacket>(packet))
+      if (const auto data = accepted<Scan::TVelodyneRawPacket>(packet)) {
+        m_source.keepTo(packet.sender);
         takeData(*data, packet.arrival);
+      }
     } else if (const auto position = accepted<Scan::TVelodynePositionPacket>(packet)) {
       takePosition(*position, packet.arrival);
     }

@@ -1,4 +1,3 @@
-#include <mrpt/core/initializer.h>
 #include <mrpt/serialization/CArchive.h>
 #include <mrpt/serialization/stl_serialization.h>  // to write std::map
 
@@ -20,10 +19,10 @@
 
 IMPLEMENTS_SERIALIZABLE(CPoleMap, CMetricMap, polemcl)
 
-// For loading the library as a plugin. After the line above, which names the class.
-MRPT_INITIALIZER(registerCPoleMap) {
-  mrpt::rtti::registerClass(CLASS_ID_NAMESPACE(CPoleMap, polemcl));
-}
+// For loading the library as a plugin. After the line above, which names the class. An
+// MRPT_INITIALIZER would run before it with Clang.
+[[maybe_unused]] static const bool kCPoleMapIsRegistered =
+    (mrpt::rtti::registerClass(CLASS_ID_NAMESPACE(CPoleMap, polemcl)), true);
 
 namespace polemcl {
 

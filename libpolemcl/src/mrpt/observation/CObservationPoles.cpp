@@ -1,4 +1,3 @@
-#include <mrpt/core/initializer.h>
 #include <mrpt/opengl/stock_objects.h>
 #include <mrpt/serialization/CArchive.h>
 
@@ -16,10 +15,10 @@
 
 IMPLEMENTS_SERIALIZABLE(CObservationPoles, CObservation, polemcl)
 
-// For loading the library as a plugin. After the line above, which names the class.
-MRPT_INITIALIZER(registerCObservationPoles) {
-  mrpt::rtti::registerClass(CLASS_ID_NAMESPACE(CObservationPoles, polemcl));
-}
+// For loading the library as a plugin. After the line above, which names the class. An
+// MRPT_INITIALIZER would run before it with Clang.
+[[maybe_unused]] static const bool kCObservationPolesIsRegistered =
+    (mrpt::rtti::registerClass(CLASS_ID_NAMESPACE(CObservationPoles, polemcl)), true);
 
 namespace polemcl {
 
