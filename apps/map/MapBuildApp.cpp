@@ -353,7 +353,8 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
     summary.inventory->kept = kept.size();
     landmarks.poles.insert(landmarks.poles.end(), kept.begin(), kept.end());
   }
-  const io::PoleMapData map = io::mapData(landmarks, facts(settings, summary, job, datum, base.map.info));
+  const io::PoleMapData map =
+      io::mapData(landmarks, facts(settings, summary, job, datum, base.map.info));
   io::AtomicFiles files;
   if (summary.mapped) writeTrajectories(job, *summary.mapped, paths);
   const report::MapView view = viewOf(job, summary, map, pathOf(sessions.added()));

@@ -7,10 +7,8 @@
 
 #include <pybind11/pybind11.h>
 
-#include <chrono>
 #include <filesystem>
 #include <mutex>
-#include <thread>
 
 #include "cli/Settings.h"
 
@@ -27,26 +25,16 @@ void addExtraction(pybind11::module_& module);    ///< PoleExtractor
 void addMaps(pybind11::module_& module);          ///< PoleMap, PoleMapBuilder, PoleLikelihood
 void addLocalization(pybind11::module_& module);  ///< Localizer and what a step returns
 
-/// \brief Lets other threads of Python run. A thread that comes back while Python ends waits for
-/// the end of the process, as in Python 3.14: Python would end it here, which C++ forbids.
+/// \brief Lets other threads of Python run. A thread that comes back while Python ends is ended by
+/// it here: the destructor must let this pass (py::gil_scoped_release does not).
 class WithoutLock {
  public:
   WithoutLock() : m_state(PyEval_SaveThread()) {}
-  ~WithoutLock() {
-    while (isEnding()) std::this_thread::sleep_for(std::chrono::hours(1));
-    PyEval_RestoreThread(m_state);
-  }
+  ~WithoutLock() noexcept(false) { PyEval_RestoreThread(m_state); }
   WithoutLock(const WithoutLock&) = delete;
   WithoutLock& operator=(const WithoutLock&) = delete;
 
  private:
-  static bool isEnding() {
-#if PY_VERSION_HEX >= 0x030D0000
-    return Py_IsFinalizing();
-#else
-    return _Py_IsFinalizing();
-#endif
-  }
   PyThreadState* m_state;
 };
 

@@ -50,16 +50,12 @@ void print(const PoleDriveSummary& summary, const SimulateOptions& options) {
             << " true poles: " << options.poles->string() << '\n';
 }
 
-const std::vector<std::string> kFolderNames{"velodyne",
-                                            "velodyne/[0-9][0-9][0-9][0-9][0-9][0-9]*.bin",
-                                            "labels",
-                                            "labels/[0-9][0-9][0-9][0-9][0-9][0-9]*.label",
-                                            "times.txt",
-                                            "poses.txt",
-                                            "odometry.txt",
-                                            "poles_gt.csv",
-                                            "scan_timing.ini",
-                                            "config.ini"};
+const std::vector<std::string> kFolderNames{
+    "velodyne",        "velodyne/[0-9][0-9][0-9][0-9][0-9][0-9]*.bin",
+    "labels",          "labels/[0-9][0-9][0-9][0-9][0-9][0-9]*.label",
+    "times.txt",       "poses.txt",
+    "odometry.txt",    "poles_gt.csv",
+    "scan_timing.ini", "config.ini"};
 const std::string kFolderMarker = "poles_gt.csv";
 
 /// The models of the simulator, and the two that `[sensor]` describes.

@@ -13,7 +13,8 @@ namespace {
 class OutputFolderTest : public testing::Test {
  protected:
   OutputFolder open(const std::string& name) {
-    return OutputFolder(folder / name, "a drive", {"mark", "data", "scans", "scans/[0-9]*.bin"}, "mark");
+    return OutputFolder(folder / name, "a drive", {"mark", "data", "scans", "scans/[0-9]*.bin"},
+                        "mark");
   }
   /// The message of the refusal, empty when accepted.
   std::string refusal(const std::string& name) {

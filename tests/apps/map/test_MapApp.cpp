@@ -413,9 +413,10 @@ TEST_F(MapApp, RefusesWhenNoScanHasAPoint) {
   expectFailure(run({"in"}), {"in.rawlog", "no usable scan"});
   drive("seen", 12);
   expectFailure(run({"seen", "in"}), {"in.rawlog", "no usable scan, 2 without a valid point"});
-  expectFailure(runProgram(mapMain, {"build", "--config", config(), "--output", at("street.polemap"),
-                                     "--input", at("seen.rawlog"), at("in.rawlog")}),
-                {"in.rawlog", "no usable scan"});
+  expectFailure(
+      runProgram(mapMain, {"build", "--config", config(), "--output", at("street.polemap"),
+                           "--input", at("seen.rawlog"), at("in.rawlog")}),
+      {"in.rawlog", "no usable scan"});
 }
 
 TEST_F(MapApp, RefusesATruncatedRawlogUnlessAllowed) {

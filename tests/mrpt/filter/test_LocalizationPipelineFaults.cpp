@@ -301,8 +301,8 @@ std::vector<PoleScan> standing(const PoleScan& at, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     scans[i].time = at.time + 0.1 * static_cast<double>(i);
     // What wheels that stand are given by [motion]: 5 mm and 0.1 degrees.
-    scans[i].motion = PoseWithCovariance{
-        {}, Eigen::Vector3d(2.5e-5, 2.5e-5, 3e-6).asDiagonal().toDenseMatrix()};
+    scans[i].motion =
+        PoseWithCovariance{{}, Eigen::Vector3d(2.5e-5, 2.5e-5, 3e-6).asDiagonal().toDenseMatrix()};
   }
   return scans;
 }

@@ -45,8 +45,9 @@ struct PathSection {
 
 struct PathSections {
   std::vector<PathSection> occupied;  ///< in the order travelled
-  std::size_t count = 0;              ///< all sections, also those between scans; none that only unused scans pass
-  double length = 0;                  ///< of all paths, m
+  std::size_t count =
+      0;              ///< all sections, also those between scans; none that only unused scans pass
+  double length = 0;  ///< of all paths, m
 };
 
 /// \brief Splits the distance travelled.

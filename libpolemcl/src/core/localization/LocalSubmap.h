@@ -114,9 +114,9 @@ class POLEMCL_EXPORT LocalSubmap {
 
   /// \brief Gives each detection out once, averaged: the poles detected in the latest frame that
   /// have `minHits` and were not given out for `metres` of progress(), as the mean of their
-  /// detections since then. Of two frames the one nearer to `metres` counts. Robot frame, covariance with `floor`,
-  /// `points` the number of hits. Afterwards these poles begin anew: their place is that of the
-  /// next detection.
+  /// detections since then. Of two frames the one nearer to `metres` counts. Robot frame,
+  /// covariance with `floor`, `points` the number of hits. Afterwards these poles begin anew: their
+  /// place is that of the next detection.
   std::vector<PoleDetection> take(std::uint32_t minHits, double metres);
 
  private:

@@ -218,8 +218,7 @@ void Update::dropDoubles(const std::vector<Eigen::Vector2d>& before) {
       if (j <= i || m_gone[i] || m_gone[j]) continue;
       const std::size_t a = m_session.poles()[i].observations.size(),
                         b = m_session.poles()[j].observations.size();
-      const bool wereHere =
-          j < m_known && (before[i] - before[j]).norm() < m_mapping.mergeDistance;
+      const bool wereHere = j < m_known && (before[i] - before[j]).norm() < m_mapping.mergeDistance;
       if (a + b == 0 || (wereHere && std::min(a, b) == 0) || seenTogether(i, j)) continue;
       const std::size_t gone = a < b ? i : j;
       m_gone[gone] = true;
