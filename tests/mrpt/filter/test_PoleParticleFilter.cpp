@@ -227,13 +227,20 @@ TEST(PoleParticleFilter, FramesWithoutPolesOnlyPredict) {
 
 /// Particles far apart are tempered; without poles there is nothing to temper.
 TEST(PoleParticleFilter, FramesWithoutPolesDoNotSpreadParticles) {
-  PoleParticleFilter localizer(smallMap(), {}, 1);
-  localizer.start(at({0, 0, 0}, 2, 0.2));
-  const double before = localizer.step(emptyFrame(0)).covariance(0, 0);
-  for (int i = 1; i <= 30; ++i) localizer.step(emptyFrame(i, PoseWithCovariance()));
-  EXPECT_NEAR(localizer.step(emptyFrame(31, PoseWithCovariance())).covariance(0, 0), before,
-              0.01 * before);
-  EXPECT_EQ(localizer.report().temperingStages, 0u);
+  FilterOptions options;
+  options.extraSigma = options.extraSigmaYaw = 0;
+  for (const double radius : {0.2, 0.4, 0.8, 1.6}) {
+    PoleParticleFilter localizer(smallMap(), options, 1);
+    StartOptions start = at({0, 0, 0}, radius, 0.1 * radius);
+    start.particles = options.particles;
+    localizer.start(start);
+    const double before = localizer.step(emptyFrame(0)).covariance(0, 0);
+    for (int i = 1; i <= 30; ++i) {
+      const auto estimate = localizer.step(emptyFrame(i, PoseWithCovariance()));
+      ASSERT_NEAR(estimate.covariance(0, 0), before, 0.01 * before) << radius;
+      ASSERT_EQ(localizer.report().temperingStages, 0u) << radius;
+    }
+  }
 }
 
 TEST(PoleParticleFilter, BestShareIsTheMeanOfTheBest) {
