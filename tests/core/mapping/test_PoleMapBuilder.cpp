@@ -144,6 +144,7 @@ TEST(PoleMapBuilder, AStandingVehicleCountsOnce) {
     PoleMapOptions options = sectionsOfOneMetre(2, 2);
     options.everyScan = everyScan;
     EXPECT_TRUE(buildPoleMap(scans, options).poles.empty());
+    EXPECT_EQ(buildPoleMap(scans, options).keyframes, everyScan ? 50u : 1u);
   }
 }
 

@@ -19,14 +19,20 @@ struct Keyframe {
   std::uint32_t section;  ///< number among the occupied ones
 };
 
+/// Scans of a section that are used at most. A vehicle that stands has many, which say the same.
+constexpr std::size_t kMostInSection = 50;
+
 std::vector<Keyframe> chooseKeyframes(const PathSections& sections, bool everyScan) {
   std::vector<Keyframe> keyframes;
   for (std::uint32_t number = 0; number < sections.occupied.size(); ++number) {
     const PathSection& section = sections.occupied[number];
-    if (!everyScan) keyframes.push_back({section.middle, number});
-    for (const std::size_t scan : section.scans) {
-      if (everyScan) keyframes.push_back({scan, number});
+    if (!everyScan) {
+      keyframes.push_back({section.middle, number});
+      continue;
     }
+    const std::size_t scans = section.scans.size(), used = std::min(scans, kMostInSection);
+    for (std::size_t i = 0; i < used; ++i)
+      keyframes.push_back({section.scans[i * scans / used], number});
   }
   return keyframes;
 }
