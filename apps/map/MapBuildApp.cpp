@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <set>
 #include <sstream>
 
@@ -196,6 +197,12 @@ void addShares(const MapBuildSummary& summary, std::map<std::string, std::string
   }
 }
 
+/// A number among the facts of a map; 0 if there is none.
+std::size_t numberOf(const std::map<std::string, std::string>& info, const std::string& key) {
+  const auto fact = info.find(key);
+  return fact == info.end() ? 0 : std::strtoul(fact->second.c_str(), nullptr, 10);
+}
+
 std::map<std::string, std::string> facts(const AllSettings& settings,
                                          const MapBuildSummary& summary, const MapBuildJob& job,
                                          const std::optional<io::Datum>& datum,
@@ -224,10 +231,12 @@ std::map<std::string, std::string> facts(const AllSettings& settings,
     if (summary.mapped->fixes > 0) info["fixes"] = std::to_string(summary.mapped->fixes);
   }
   if (summary.inventory) info["pose_sigma_m"] = io::fixed(summary.inventory->drives.sigma, 4);
-  // How the earlier drives were placed.
-  for (const char* key : {"poses", "loops", "fixes"})
-    if (const auto earlier = before.find(key); job.add && earlier != before.end())
-      info.insert(*earlier);
+  if (!job.add) return info;
+  if (before.count("poses") > 0) info["poses"] = before.at("poses");
+  for (const char* key : {"loops", "fixes"}) {
+    const std::size_t sum = numberOf(info, key) + numberOf(before, key);
+    if (sum > 0) info[key] = std::to_string(sum);
+  }
   return info;
 }
 
@@ -322,6 +331,8 @@ void checkTruth(const std::vector<MappingSession>& drives, const MapBuildJob& jo
 MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
                          const ScanProgress& progress) {
   job.validate();
+  if (job.inventory && job.keepScans)
+    throw Error("--keep-scans: not with --inventory, whose poles out of sight are of no scan");
   MapBuildSummary summary;
   BaseMap base = baseOf(job);
   auto datum = datumFor(job, base);

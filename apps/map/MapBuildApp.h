@@ -19,7 +19,7 @@ namespace polemcl::apps {
 struct MapBuildJob : MappingJob {
   /// `.polemap` that keeps its scans: the inputs are sessions after those it was made from.
   std::optional<std::filesystem::path> add = {};
-  bool keepScans = false;  ///< in the map, for `add`; always when `add` is given
+  bool keepScans = false;  ///< in the map, for `add`; always with `add`, never with `inventory`
   /// `.polemap` of poles known to metres (`pole-map import`): the inputs are localized in it, and
   /// are adjusted to it together. Its poles out of their sight stay on the map.
   std::optional<std::filesystem::path> inventory = {};

@@ -22,13 +22,15 @@ constexpr double kManyMoved = 0.05;          ///< share of the poles in view; mo
 
 void requireSamePlace(const MapUpdateCounts& counts, const std::filesystem::path& input,
                       const std::filesystem::path& map) {
-  const std::size_t expected = std::max(counts.expectedOnMap, counts.nearOnMap);
+  const bool near = counts.nearOnMap > counts.expectedOnMap;
+  const std::size_t expected = near ? counts.nearOnMap : counts.expectedOnMap;
   if (expected < kEnoughExpected ||
       static_cast<double>(counts.foundOnMap) >= kLeastFound * static_cast<double>(expected))
     return;
   throw Error(input.string() + ": only " + std::to_string(counts.foundOnMap) + " of " +
               std::to_string(expected) + " poles of " + map.string() +
-              " in its view were found; are its poses of the same place and datum? A new place "
+              (near ? " near its path" : " in its view") +
+              " were found; are its poses of the same place and datum? A new place "
               "needs a new map, a map of pole-map import needs pole-map build --inventory");
 }
 
@@ -101,6 +103,7 @@ Json sessionJson(const MapUpdateCounts& c) {
   return {{"scans", c.scans},
           {"uncertain", c.uncertain},
           {"expected", c.expectedOnMap},
+          {"near", c.nearOnMap},
           {"found", c.foundOnMap},
           {"new", c.entered},
           {"vanished", c.left},

@@ -162,7 +162,8 @@ void writeViews(const MappingJob& job, const io::PoleMapData& map, const report:
 void keepWarnings(const std::vector<std::string>& warnings,
                   std::map<std::string, std::string>& info) {
   for (const std::string& warning : warnings)
-    info["warnings"] += (info["warnings"].empty() ? "" : "; ") + warning;
+    if (info["warnings"].find(warning) == std::string::npos)
+      info["warnings"] += (info["warnings"].empty() ? "" : "; ") + warning;
 }
 
 SessionFiles MappingJob::session(std::size_t i) const {

@@ -86,7 +86,7 @@ std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped);
 /// \brief Writes table and scene of a new map, when the job names them.
 void writeViews(const MappingJob& job, const io::PoleMapData& map, const report::MapView& view);
 
-/// \brief Adds warnings to those in a map's info, key `warnings`.
+/// \brief Adds warnings to those in a map's info, key `warnings`, unless they are there.
 void keepWarnings(const std::vector<std::string>& warnings,
                   std::map<std::string, std::string>& info);
 

@@ -121,7 +121,7 @@ class OsmReader {
     m_nodes[id] = m_place;
   }
 
-  /// By JOSM, before the upload, or in a history of OSM.
+  /// By JOSM, before the upload.
   static bool isDeleted(const char** attributes) {
     const char *action = attribute(attributes, "action"),
                *visible = attribute(attributes, "visible");

@@ -7,8 +7,12 @@
 
 #include <pybind11/pybind11.h>
 
+#include <exception>
 #include <filesystem>
 #include <mutex>
+#include <optional>
+#include <type_traits>
+#include <utility>
 
 #include "cli/Settings.h"
 
@@ -25,25 +29,35 @@ void addExtraction(pybind11::module_& module);    ///< PoleExtractor
 void addMaps(pybind11::module_& module);          ///< PoleMap, PoleMapBuilder, PoleLikelihood
 void addLocalization(pybind11::module_& module);  ///< Localizer and what a step returns
 
-/// \brief Lets other threads of Python run. A thread that comes back while Python ends is ended by
-/// it here: the destructor must let this pass (py::gil_scoped_release does not).
-class WithoutLock {
- public:
-  WithoutLock() : m_state(PyEval_SaveThread()) {}
-  ~WithoutLock() noexcept(false) { PyEval_RestoreThread(m_state); }
-  WithoutLock(const WithoutLock&) = delete;
-  WithoutLock& operator=(const WithoutLock&) = delete;
+/// \brief Does work without Python's lock. `work` must not touch Python. A thread that takes the
+/// lock again while Python ends is ended there: so not in a destructor, and not while an exception
+/// is on its way (py::gil_scoped_release is both).
+template <class Work>
+auto withoutLock(const Work& work) -> decltype(work()) {
+  constexpr bool isVoid = std::is_void_v<decltype(work())>;
+  std::conditional_t<isVoid, char, std::optional<decltype(work())>> result{};
+  std::exception_ptr failure;
+  PyThreadState* const state = PyEval_SaveThread();
+  try {
+    if constexpr (isVoid)
+      work();
+    else
+      result.emplace(work());
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  PyEval_RestoreThread(state);
+  if (failure) std::rethrow_exception(failure);
+  if constexpr (!isVoid) return std::move(*result);
+}
 
- private:
-  PyThreadState* m_state;
-};
-
-/// \brief Does work without Python's lock, alone on an object. `work` must not touch Python.
+/// \brief The same, alone on an object.
 template <class Work>
 auto alone(std::mutex& object, const Work& work) {
-  const WithoutLock released;
-  const std::lock_guard<std::mutex> lock(object);
-  return work();
+  return withoutLock([&] {
+    const std::lock_guard<std::mutex> lock(object);
+    return work();
+  });
 }
 
 }  // namespace polemcl::apps::python

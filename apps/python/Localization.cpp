@@ -22,8 +22,8 @@ LocalizationMap localizationMap(const PoleMap& map, const AllSettings& settings)
 }
 
 Localizer localizerOf(const PoleMap& map, const AllSettings& settings, std::uint32_t seed) {
-  const WithoutLock released;
-  return {Settings(settings), localizationMap(map, settings), seed};
+  return withoutLock(
+      [&] { return Localizer(Settings(settings), localizationMap(map, settings), seed); });
 }
 
 /// A polemcl::Localizer with its lock.

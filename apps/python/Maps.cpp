@@ -29,13 +29,14 @@ MapPtr mapOf(const py::object& poles, const Facts& info) {
   MapContent content;
   content.map.poles = mapPolesFrom(poles);
   content.map.info = info;
-  const WithoutLock released;
-  return std::make_shared<PoleMap>(std::move(content));
+  return withoutLock([&] {
+    io::requireSound(content.map, "");
+    return std::make_shared<PoleMap>(std::move(content));
+  });
 }
 
 MapPtr load(const std::filesystem::path& file) {
-  const WithoutLock released;
-  return std::make_shared<PoleMap>(readMapFile(file));
+  return withoutLock([&] { return std::make_shared<PoleMap>(readMapFile(file)); });
 }
 
 /// The array `polemeans` of the authors' program: x, y, radius of each pole.
@@ -50,8 +51,7 @@ void saveNpz(const PoleMap& map, const std::filesystem::path& file) {
 
 void save(const PoleMap& map, const std::filesystem::path& file) {
   if (file.extension() == ".npz") return saveNpz(map, file);
-  const WithoutLock released;
-  writeMapFile(file, map.content);
+  withoutLock([&] { writeMapFile(file, map.content); });
 }
 
 /// Index (-1: none) and distance (infinite: none) of the nearest pole of each place.
@@ -64,14 +64,13 @@ py::tuple nearest(const PoleMap& map, const py::object& places, double radius) {
   py::array_t<double> distances(count);
   std::int64_t* index = indices.mutable_data();
   double* distance = distances.mutable_data();
-  {
-    const WithoutLock released;
+  withoutLock([&] {
     for (std::size_t i = 0; i < xy.size(); i += 2) {
       const auto pole = map.index.nearest(xy[i], xy[i + 1], radius);
       *index++ = pole ? static_cast<std::int64_t>(pole->index) : -1;
       *distance++ = pole ? pole->distance : INFINITY;
     }
-  }
+  });
   return py::make_tuple(indices, distances);
 }
 
@@ -119,10 +118,7 @@ class Likelihood {
     const std::vector<PoleDetection> poles = detectionsFrom(polesArray);
     const std::vector<Pose2D> poses = posesFrom(posesArray);
     std::vector<double> result;
-    {
-      const WithoutLock released;
-      polemcl::logLikelihoods(poles, poses, m_index, m_options, result);
-    }
+    withoutLock([&] { polemcl::logLikelihoods(poles, poses, m_index, m_options, result); });
     return toArray(result);
   }
 

@@ -51,8 +51,8 @@ void print(const PoleDriveSummary& summary, const SimulateOptions& options) {
 }
 
 const std::vector<std::string> kFolderNames{
-    "velodyne",        "velodyne/[0-9][0-9][0-9][0-9][0-9][0-9]*.bin",
-    "labels",          "labels/[0-9][0-9][0-9][0-9][0-9][0-9]*.label",
+    "velodyne",        "velodyne/[0-9][0-9][0-9][0-9][0-9][0-9].bin",
+    "labels",          "labels/[0-9][0-9][0-9][0-9][0-9][0-9].label",
     "times.txt",       "poses.txt",
     "odometry.txt",    "poles_gt.csv",
     "scan_timing.ini", "config.ini"};

@@ -124,12 +124,27 @@ import numpy, polemcl
 poles = numpy.zeros(1000, polemcl.map_pole_type)
 poles["x"], poles["confidence"], poles["cov_xx"], poles["cov_yy"] = range(1000), 1, 1, 1
 street, places = polemcl.PoleMap(poles), numpy.zeros((20000, 2))
+builder, seen = polemcl.PoleMapBuilder(), numpy.zeros(1000, polemcl.detection_type)
 def ask():
     while True:
         street.nearest(places)
-threading.Thread(target=ask, daemon=True).start()
+def fail():
+    while True:
+        try:
+            builder.add((numpy.nan, 0, 0), seen)
+        except polemcl.Error:
+            pass
+for work in ask, fail:
+    threading.Thread(target=work, daemon=True).start()
 time.sleep(0.3)
 """
+
+
+class MadeMaps(unittest.TestCase):
+    def test_refuse_what_no_file_may_hold(self):
+        for name, value in (("radius", np.nan), ("confidence", 5), ("cov_xx", -1)):
+            with self.assertRaisesRegex(polemcl.Error, r"^pole 1 \(counted from 0\): "):
+                polemcl.PoleMap(made_poles([(1, 2), (3, 4)], **{name: [0, value]}))
 
 
 class Processes(unittest.TestCase):

@@ -13,7 +13,7 @@ namespace {
 class OutputFolderTest : public testing::Test {
  protected:
   OutputFolder open(const std::string& name) {
-    return OutputFolder(folder / name, "a drive", {"mark", "data", "scans", "scans/[0-9]*.bin"},
+    return OutputFolder(folder / name, "a drive", {"mark", "data", "scans", "scans/[0-9][0-9].bin"},
                         "mark");
   }
   /// The message of the refusal, empty when accepted.
@@ -127,11 +127,11 @@ TEST_F(OutputFolderTest, RefusesAFolderWithForeignFiles) {
 
 TEST_F(OutputFolderTest, RefusesForeignFilesInASubfolder) {
   writeText(folder / "out" / "mark", "old");
-  writeText(folder / "out" / "scans" / "000001.bin", "old");
+  writeText(folder / "out" / "scans" / "01.bin", "old");
   EXPECT_EQ(refusal("out"), "");
-  writeText(folder / "out" / "scans" / "notes.txt", "by hand");
-  EXPECT_NE(refusal("out").find("scans/notes.txt"), std::string::npos) << refusal("out");
-  EXPECT_TRUE(fs::exists(folder / "out" / "scans" / "notes.txt"));
+  writeText(folder / "out" / "scans" / "01_cleaned.bin", "by hand");
+  EXPECT_NE(refusal("out").find("scans/01_cleaned.bin"), std::string::npos) << refusal("out");
+  EXPECT_TRUE(fs::exists(folder / "out" / "scans" / "01_cleaned.bin"));
 }
 
 TEST_F(OutputFolderTest, RefusesAFolderWithoutTheMarker) {

@@ -366,25 +366,6 @@ TEST(LocalSubmap, TakesAtTheFrameNearestToTheDistance) {
   EXPECT_TRUE(submap.take(2, 0.5).empty());
 }
 
-TEST(LocalSubmap, TakesAgainWhereTheOdometryForgets) {
-  LocalSubmap submap(exact());
-  Eigen::Matrix3d rest = Eigen::Matrix3d::Zero();
-  for (int i = 0; i < 2; ++i) submap.add({}, rest, {seen(10, 2)});
-  ASSERT_EQ(submap.take(2, 0.5).size(), 1u);
-  for (int i = 0; i < 20; ++i) {
-    submap.add({}, rest, {seen(10, 2)});
-    EXPECT_TRUE(submap.take(2, 0.5).empty());
-  }
-  rest(0, 0) = 0.04;  // 0.2 m in a scan
-  for (int i = 0; i < 2; ++i) {
-    submap.add({}, rest, {seen(10, 2)});
-    EXPECT_TRUE(submap.take(2, 0.5).empty());
-  }
-  submap.add({}, rest, {seen(10, 2)});
-  EXPECT_EQ(submap.take(2, 0.5).size(), 1u);
-  EXPECT_EQ(submap.driven(), 0);
-}
-
 TEST(LocalSubmap, TakesOnlyWhatIsSeenNow) {
   LocalSubmap submap(exact());
   submap.add({}, {seen(10, 2)});

@@ -295,6 +295,43 @@ TEST(MapUpdater, TwoKeptPolesInOneGateBecomeOne) {
   EXPECT_EQ(counts.left, 1u);
 }
 
+/// Scans that see a pole of which only the first knows how far it sees.
+std::vector<SessionScan> glimpses(const Place& pole, const std::vector<std::size_t>& places,
+                                  double day) {
+  const std::vector<SessionScan> all = drive({pole}, day);
+  std::vector<SessionScan> scans;
+  for (const std::size_t place : places) {
+    scans.push_back(all[place]);
+    if (scans.size() > 1) scans.back().visibilityRange.clear();
+  }
+  return scans;
+}
+
+TEST(MapUpdater, AMovedPoleLeavesWhenTheNewOneEnters) {
+  const std::vector<std::size_t> few{2, 8, 14, 20}, more{2, 8, 9, 14, 15, 20};
+  MapUpdateCounts counts;
+  LandmarkMap map = kept({{10, 5}});
+  map.poles[0].history.existence = 0.99;
+  map = updatedBy(map, glimpses({10.9, 5}, few, 11), &counts);
+  EXPECT_EQ(counts.candidates, 1u);  // four scans are too few to enter
+  ASSERT_EQ(presentPoles(map).size(), 1u);
+  EXPECT_NEAR(presentPoles(map)[0].x, 10, 1e-9);
+  map = updatedBy(map, glimpses({10.9, 5}, more, 12), &counts);
+  EXPECT_EQ(counts.entered, 1u);
+  ASSERT_EQ(presentPoles(map).size(), 1u);
+  EXPECT_NEAR(presentPoles(map)[0].x, 10.9, 0.05);
+}
+
+TEST(MapUpdater, APoleOnTheMapDoesNotGoForACandidate) {
+  LandmarkMap map = kept({{10, 5}});
+  map.poles[0].history.existence = 0.99;
+  std::vector<SessionScan> scans = glimpses({10.55, 5}, {2, 8, 14, 20}, 11);
+  for (SessionScan& scan : scans) scan.poles_robot[0].y += 0.1;  // into the gate, then out of it
+  scans[3].poles_robot[0].y -= 0.2;
+  map = updatedBy(map, scans);
+  EXPECT_EQ(presentPoles(map).size(), 1u);
+}
+
 TEST(MapUpdater, ANeighbourThatIsNotSeenStays) {
   // 0.42 m apart, both mapped; the far one is out of the range in which a pole is expected.
   MapUpdateOptions upkeep;
@@ -309,11 +346,11 @@ TEST(MapUpdater, ANeighbourThatIsNotSeenStays) {
 TEST(MapUpdater, CountsPolesNearToScansThatKnowNotHowFarTheySee) {
   std::vector<SessionScan> scans = drive({{10, 5}});
   MapUpdateCounts counts;
-  updatedBy(kept({{10, 5}, {30, -6}, {30, 12}}), scans, &counts);
+  updatedBy(kept({{10, 5}, {30, -4}, {30, 12}}), scans, &counts);
   EXPECT_EQ(counts.nearOnMap, 0u);
   for (SessionScan& scan : scans) scan.visibilityRange.clear();
-  updatedBy(kept({{10, 5}, {30, -6}, {30, 12}}), scans, &counts);
-  EXPECT_EQ(counts.nearOnMap, 2u);  // within half of 20 m
+  updatedBy(kept({{10, 5}, {30, -4}, {30, 12}}), scans, &counts);
+  EXPECT_EQ(counts.nearOnMap, 2u);  // within 5 m of the path
   EXPECT_EQ(counts.expectedOnMap, 1u);
   EXPECT_EQ(counts.foundOnMap, 1u);
 }

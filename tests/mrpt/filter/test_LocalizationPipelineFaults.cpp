@@ -296,33 +296,37 @@ TEST_F(PoleLocalizationFaults, AStartFarFromAllPolesIsRefused) {
 }
 
 /// The scan at which a vehicle stands, again and again.
-std::vector<PoleScan> standing(const PoleScan& at, std::size_t count) {
+/// \param sigma, sigmaYaw Of the odometry between two, m and rad.
+std::vector<PoleScan> standing(const PoleScan& at, std::size_t count, double sigma,
+                               double sigmaYaw) {
   std::vector<PoleScan> scans(count, at);
+  const Eigen::Vector3d sigmas(sigma, sigma, sigmaYaw);
   for (std::size_t i = 0; i < count; ++i) {
     scans[i].time = at.time + 0.1 * static_cast<double>(i);
-    // What wheels that stand are given by [motion]: 5 mm and 0.1 degrees.
-    scans[i].motion =
-        PoseWithCovariance{{}, Eigen::Vector3d(2.5e-5, 2.5e-5, 3e-6).asDiagonal().toDenseMatrix()};
+    scans[i].motion = PoseWithCovariance{{}, sigmas.cwiseAbs2().asDiagonal()};
   }
   return scans;
 }
 
 TEST_F(PoleLocalizationFaults, AParkedVehicleKeepsItsPose) {
   drive(40);
-  LocalizationPipeline localization = started();
-  for (const PoleScan& frame : frames) localization.step(frame);
-  std::vector<PoleScan> scans = standing(frames.back(), 1201);
-  for (std::size_t i = 1; i < scans.size(); ++i) {
-    const LocalizationUpdate update = localization.step(scans[i]);
-    ASSERT_EQ(update.health.state, HealthState::ok) << i << ' ' << name(update.health.reason);
-    ASSERT_LT(update.health.spread, 0.1) << i;
-    ASSERT_LT(error(update, frames.size() - 1), 0.1) << i;
+  for (const auto& [sigma, sigmaYaw] :
+       {std::pair{0.005, 0.0017}, {0.0001, 0.0017}, {0.0, 0.0}, {0.03, 0.0}}) {
+    LocalizationPipeline localization = started();
+    for (const PoleScan& frame : frames) localization.step(frame);
+    const auto scans = standing(frames.back(), 3001, sigma, sigmaYaw);
+    for (std::size_t i = 1; i < scans.size(); ++i) {
+      const LocalizationUpdate update = localization.step(scans[i]);
+      ASSERT_EQ(update.health.state, HealthState::ok) << i << ' ' << name(update.health.reason);
+      ASSERT_LT(update.health.spread, 0.1) << i << ' ' << sigma << ' ' << sigmaYaw;
+      ASSERT_LT(error(update, frames.size() - 1), 0.1) << i << ' ' << sigma << ' ' << sigmaYaw;
+    }
   }
 }
 
 TEST_F(PoleLocalizationFaults, AScanWithoutPolesAtTheStartIsNoFirstScan) {
   drive(40);
-  std::vector<PoleScan> scans = standing(frames.front(), 30);
+  std::vector<PoleScan> scans = standing(frames.front(), 30, 0.005, 0.0017);
   scans[0].poles_robot.clear();
   LocalizationPipeline localization = started();
   LocalizationUpdate update;

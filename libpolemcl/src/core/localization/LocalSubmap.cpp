@@ -85,7 +85,6 @@ void LocalSubmap::move(const Pose2D& motion, const Eigen::Matrix3d& covariance) 
   m_pose = compose(m_pose, motion);
   m_step = std::hypot(motion.x, motion.y);
   m_driven += m_step;
-  m_progress += std::max(m_step, largestSigma(covariance.topLeftCorner<2, 2>()));
   const Eigen::Vector2d here(m_pose.x, m_pose.y);
   m_drift.add(here, yaw, covariance);
   // The last place is always the present one; it stays when the one before is far enough away.
@@ -218,11 +217,11 @@ std::vector<PoleDetection> LocalSubmap::take(std::uint32_t minHits, double metre
   std::vector<PoleDetection> poles_robot;
   for (SubmapPole& pole : m_poles) {
     const bool now = pole.seenFrame == m_frames && !pole.taken && pole.hits >= minHits;
-    const bool waited = pole.hits == minHits || m_progress + m_step / 2 - pole.takenAt >= metres;
+    const bool waited = pole.hits == minHits || m_driven + m_step / 2 - pole.takenAt >= metres;
     if (!now || !waited) continue;
     poles_robot.push_back(seenNow(pole));
     pole.taken = true;
-    pole.takenAt = m_progress;
+    pole.takenAt = m_driven;
   }
   return poles_robot;
 }

@@ -54,7 +54,7 @@ struct POLEMCL_EXPORT SubmapPole {
   double confidence = 0;      ///< mean of the detections, in [0, 1]
   std::uint32_t hits = 0;     ///< frames that detected it
   std::uint32_t chances = 0;  ///< frames that detected it or had it within `viewRange`
-  double takenAt = 0;         ///< progress() when take() last gave it out
+  double takenAt = 0;         ///< metres driven when take() last gave it out
   bool taken = false;         ///< take() gave it out and it was not detected since
   /// \name When it was last detected
   /// @{
@@ -94,9 +94,6 @@ class POLEMCL_EXPORT LocalSubmap {
   /// \brief The robot in the local frame, by dead reckoning.
   const Pose2D& pose() const { return m_pose; }
   double driven() const { return m_driven; }  ///< m, since the first frame
-  /// \brief The same, but a motion counts at least its standard deviation, m: while the robot
-  /// stands, the odometry forgets where it is.
-  double progress() const { return m_progress; }
   std::size_t frames() const { return m_frames; }
   /// \brief Places of the robot over the last `length` metres, local frame, oldest first, a metre
   /// or more apart, the present one last.
@@ -113,10 +110,10 @@ class POLEMCL_EXPORT LocalSubmap {
   std::vector<PoleDetection> detections(std::uint32_t minHits) const;
 
   /// \brief Gives each detection out once, averaged: the poles detected in the latest frame that
-  /// have `minHits` and were not given out for `metres` of progress(), as the mean of their
-  /// detections since then. Of two frames the one nearer to `metres` counts. Robot frame,
-  /// covariance with `floor`, `points` the number of hits. Afterwards these poles begin anew: their
-  /// place is that of the next detection.
+  /// have `minHits` and were not given out for `metres`, as the mean of their detections since
+  /// then. Of two frames the one nearer to `metres` counts. Robot frame, covariance with `floor`,
+  /// `points` the number of hits. Afterwards these poles begin anew: their place is that of the
+  /// next detection.
   std::vector<PoleDetection> take(std::uint32_t minHits, double metres);
 
  private:
@@ -131,7 +128,7 @@ class POLEMCL_EXPORT LocalSubmap {
   SubmapOptions m_options;
   std::vector<SubmapPole> m_poles;
   Pose2D m_pose;
-  double m_driven = 0, m_progress = 0;
+  double m_driven = 0;
   double m_step = 0;  ///< length of the last motion, m
   std::size_t m_frames = 0;
   std::size_t m_opened = 0;  ///< poles

@@ -113,7 +113,7 @@ void Session::expect(std::size_t number, const KdTree2D& tree,
     const bool found =
         !own.observations.empty() && m_observations[own.observations.back()].scan == number;
     const bool unknown = scan.visibilityRange.empty();
-    own.wasNear |= unknown && 4 * hit.squaredDistance <= m_options.range * m_options.range;
+    own.wasNear |= unknown && hit.squaredDistance <= kNearby * kNearby;
     if (unknown && !found) continue;
     own.likelihood.add(found, m_along[number], detectionChance(poles[hit.index].history),
                        !unknown && !inView(scan, poles[hit.index].pole));

@@ -11,11 +11,13 @@
 
 namespace polemcl {
 
+constexpr double kNearby = 5;  ///< m: what is that near to the path, a depth camera sees as well
+
 /// \brief Result of a session for one pole.
 struct SessionPole {
   std::vector<std::uint32_t> observations;  ///< indices into Session::observations(), of all ranges
   ExistenceLikelihood likelihood;           ///< within range only
-  bool wasNear = false;  ///< a scan without visibility ranges came within half of that range
+  bool wasNear = false;  ///< a scan without visibility ranges passed it within `kNearby`
 };
 
 /// \brief "the scan at 12.300000 s", for messages: scans may have been left out before.

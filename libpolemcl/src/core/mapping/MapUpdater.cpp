@@ -174,7 +174,7 @@ void Update::movePlaces() {
   }
 }
 
-/// Drops a pole that was never found if a new pole that enters the map stands beside it.
+/// Drops a pole that was never found if a pole that enters the map stands beside it.
 void Update::dropGhosts() {
   const KdTree2D tree(centresOf(m_poles));
   std::vector<PointHit> near;
@@ -183,7 +183,7 @@ void Update::dropGhosts() {
     if (!m_session.poles()[i].observations.empty() || likelihood.missed() == 0) continue;
     tree.within(m_poles[i].pole.x, m_poles[i].pole.y, kGhost, near);
     m_gone[i] = std::any_of(near.begin(), near.end(), [&](const PointHit& hit) {
-      return hit.index >= m_known && entersMap(m_poles[hit.index]);
+      return !m_poles[hit.index].present && entersMap(m_poles[hit.index]);
     });
     m_counts.moved += m_gone[i] && m_poles[i].present;
   }
@@ -205,9 +205,9 @@ bool Update::seenTogether(std::size_t a, std::size_t b) const {
          m_mapping.apartShare * static_cast<double>(std::max(first.size(), second.size()));
 }
 
-/// Drops the pole seen less often today when two poles have moved into one gate. Of two poles that
-/// the map had there already, both must have been seen.
-/// \param before Places of the known poles.
+/// Drops the pole seen less often today when two poles have moved into one gate; one on the map
+/// only for one that is on the map then. Of two poles that the map had there already, both must
+/// have been seen. \param before Places of the known poles.
 void Update::dropDoubles(const std::vector<Eigen::Vector2d>& before) {
   const KdTree2D tree(centresOf(m_poles));
   std::vector<PointHit> near;
@@ -220,9 +220,11 @@ void Update::dropDoubles(const std::vector<Eigen::Vector2d>& before) {
                         b = m_session.poles()[j].observations.size();
       const bool wereHere = j < m_known && (before[i] - before[j]).norm() < m_mapping.mergeDistance;
       if (a + b == 0 || (wereHere && std::min(a, b) == 0) || seenTogether(i, j)) continue;
-      const std::size_t gone = a < b ? i : j;
+      const auto stays = [&](std::size_t k) { return m_poles[k].present || entersMap(m_poles[k]); };
+      std::size_t gone = a < b ? i : j, other = a < b ? j : i;
+      if (m_poles[gone].present && !stays(other)) std::swap(gone, other);
       m_gone[gone] = true;
-      m_counts.left += gone < m_known && m_poles[gone].present;
+      m_counts.left += m_poles[gone].present;
     }
   }
 }

@@ -72,10 +72,10 @@ struct MapUpdateCounts {
   std::size_t uncertain = 0;          ///< left out: their positions are too uncertain
   std::size_t withoutVisibility = 0;  ///< of the used ones: nothing is missed in them
   std::size_t expectedOnMap = 0;      ///< poles on the map before that a scan could see
-  std::size_t nearOnMap = 0;          ///< poles that scans without visibility ranges came near to
+  std::size_t nearOnMap = 0;          ///< poles that scans without visibility ranges passed nearby
   std::size_t foundOnMap = 0;         ///< of these two, found at least once
   std::size_t entered = 0;            ///< new on the map
-  std::size_t left = 0;               ///< gone from the map, those moved away not counted
+  std::size_t left = 0;               ///< gone from the map, those moved a stride away not counted
   std::size_t moved = 0;              ///< in place, or a stride away
   std::size_t candidates = 0;         ///< kept beside the map
   std::size_t forgotten = 0;

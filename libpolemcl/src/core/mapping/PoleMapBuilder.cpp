@@ -19,20 +19,28 @@ struct Keyframe {
   std::uint32_t section;  ///< number among the occupied ones
 };
 
-/// Scans of a section that are used at most. A vehicle that stands has many, which say the same.
-constexpr std::size_t kMostInSection = 50;
+/// Scans of a place that are used at most, and how far it reaches, m. A vehicle that stands has
+/// many scans, which say the same.
+constexpr std::size_t kMostAtAPlace = 50;
+constexpr double kPlace = 0.05;
 
-std::vector<Keyframe> chooseKeyframes(const PathSections& sections, bool everyScan) {
+std::vector<Keyframe> chooseKeyframes(const PathSections& sections,
+                                      const std::vector<MappingScan>& scans, bool everyScan) {
   std::vector<Keyframe> keyframes;
+  Pose2D place;
+  std::size_t here = 0;  // scans used at the place
   for (std::uint32_t number = 0; number < sections.occupied.size(); ++number) {
     const PathSection& section = sections.occupied[number];
-    if (!everyScan) {
-      keyframes.push_back({section.middle, number});
-      continue;
+    if (!everyScan) keyframes.push_back({section.middle, number});
+    for (const std::size_t scan : section.scans) {
+      if (!everyScan) break;
+      const Pose2D& pose = scans[scan].pose_map_robot;
+      if (here == 0 || std::hypot(pose.x - place.x, pose.y - place.y) > kPlace) {
+        place = pose;
+        here = 0;
+      }
+      if (++here <= kMostAtAPlace) keyframes.push_back({scan, number});
     }
-    const std::size_t scans = section.scans.size(), used = std::min(scans, kMostInSection);
-    for (std::size_t i = 0; i < used; ++i)
-      keyframes.push_back({section.scans[i * scans / used], number});
   }
   return keyframes;
 }
@@ -143,7 +151,7 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
   }
   const auto split = options.middle == SectionMiddle::passed ? passSections : splitPath;
   const PathSections sections = split(poses, drives, options.sectionLength, used);
-  const std::vector<Keyframe> keyframes = chooseKeyframes(sections, options.everyScan);
+  const std::vector<Keyframe> keyframes = chooseKeyframes(sections, scans, options.everyScan);
   const std::vector<LandmarkObservation> observations = observationsOf(scans, keyframes, options);
   const bool boxes = options.merging == MapMerging::boxes;
   const auto groups =

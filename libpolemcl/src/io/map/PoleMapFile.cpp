@@ -56,22 +56,6 @@ void require(const char* why, const std::string& where, const char* what, std::s
   if (why) throw Error(where + what + std::to_string(i) + " (counted from 0): " + why);
 }
 
-void requireSound(const PoleMapData& data, const std::string& where) {
-  if (!data.histories.empty() && data.histories.size() != data.poles.size()) {
-    throw Error(where + std::to_string(data.histories.size()) + " histories for " +
-                std::to_string(data.poles.size()) +
-                " poles; allowed is one for each pole, or no history");
-  }
-  for (std::size_t i = 0; i < data.poles.size(); ++i)
-    require(fault(data.poles[i]), where, "pole ", i);
-  for (std::size_t i = 0; i < data.histories.size(); ++i)
-    require(fault(data.histories[i]), where, "pole ", i);
-  for (std::size_t i = 0; i < data.candidates.size(); ++i) {
-    require(fault(data.candidates[i].pole), where, "candidate ", i);
-    require(fault(data.candidates[i].history), where, "candidate ", i);
-  }
-}
-
 void putChunk(ByteWriter& payload, std::string_view tag, std::string_view content) {
   payload.putRaw(tag);
   payload.put(static_cast<std::uint64_t>(content.size()));
@@ -215,6 +199,22 @@ void eachChunk(const std::filesystem::path& file, const Use& use) {
 }
 
 }  // namespace
+
+void requireSound(const PoleMapData& data, const std::string& where) {
+  if (!data.histories.empty() && data.histories.size() != data.poles.size()) {
+    throw Error(where + std::to_string(data.histories.size()) + " histories for " +
+                std::to_string(data.poles.size()) +
+                " poles; allowed is one for each pole, or no history");
+  }
+  for (std::size_t i = 0; i < data.poles.size(); ++i)
+    require(fault(data.poles[i]), where, "pole ", i);
+  for (std::size_t i = 0; i < data.histories.size(); ++i)
+    require(fault(data.histories[i]), where, "pole ", i);
+  for (std::size_t i = 0; i < data.candidates.size(); ++i) {
+    require(fault(data.candidates[i].pole), where, "candidate ", i);
+    require(fault(data.candidates[i].history), where, "candidate ", i);
+  }
+}
 
 LandmarkMap landmarkMap(const PoleMapData& data) {
   LandmarkMap map;

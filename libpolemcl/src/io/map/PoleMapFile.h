@@ -47,12 +47,15 @@ POLEMCL_EXPORT LandmarkMap landmarkMap(const PoleMapData& data);
 /// \brief Inverse of landmarkMap().
 POLEMCL_EXPORT PoleMapData mapData(const LandmarkMap& map, std::map<std::string, std::string> info);
 
-/// \brief Writes atomically; equal data give equal bytes.
-/// \param scans Optional: stored in the file, so that sessions can be added later.
-/// \throws Error when the file cannot be written, or when the data are invalid. For a pole: values
-///         not finite, negative radius, confidence outside [0, 1], covariance not positive
+/// \throws Error, which begins with `where`, when the data are invalid. For a pole: values not
+///         finite, negative radius, confidence outside [0, 1], covariance not positive
 ///         semidefinite. For a history: existence outside [0, 1], time negative or not finite. Also
 ///         when the number of histories is neither 0 nor the number of poles.
+POLEMCL_EXPORT void requireSound(const PoleMapData& data, const std::string& where);
+
+/// \brief Writes atomically; equal data give equal bytes.
+/// \param scans Optional: stored in the file, so that sessions can be added later.
+/// \throws Error when the file cannot be written, or as requireSound().
 POLEMCL_EXPORT void writePoleMap(const std::filesystem::path& file, const PoleMapData& data,
                                  const AddedSessions* scans = nullptr);
 

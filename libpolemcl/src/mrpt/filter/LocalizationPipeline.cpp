@@ -74,6 +74,14 @@ void keepMostConfident(std::vector<PoleDetection>& poles) {
   poles = std::move(kept);
 }
 
+/// Variance that a motion adds in the filter to where poles are seen, m².
+double spreadBy(const Eigen::Matrix3d& motion, const FilterOptions& filter) {
+  const double yaw = motion(2, 2) + filter.extraSigmaYaw * filter.extraSigmaYaw,
+               lever = LocalizationPipeline::leverMetres;
+  return std::max(motion(0, 0), motion(1, 1)) + filter.extraSigma * filter.extraSigma +
+         lever * lever * yaw;
+}
+
 /// Median of the standard deviations of the poles' places along an axis, m.
 double medianSigma(const std::vector<MapPole>& poles) {
   std::vector<double> sigmas;
@@ -170,6 +178,7 @@ LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
   if (m_stepped) covariance += frame.motion->covariance;
   m_submap.add(motion, covariance, frame.poles_robot);
   m_tracked = frame;
+  if (m_stepped) m_forgotten += spreadBy(frame.motion->covariance, m_options.filter);
   m_isFirst = !m_hadPoles;
   m_hadPoles |= !frame.poles_robot.empty();
   m_tracked.poles_robot = polesForFilter(motion, covariance, frame.poles_robot);
@@ -218,8 +227,15 @@ std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
   if (m_isFirst || std::hypot(motion.x, motion.y) > sparseMetres) m_tracks.clear();
   m_tracks.add(motion, covariance, poles_robot);
   // The first scan with poles is used as it is: there is nothing to average yet.
-  if (m_tracks.frames() == 1) return poles_robot;
-  return m_tracks.take(static_cast<std::uint32_t>(tracking.minHits), tracking.every);
+  if (m_tracks.frames() == 1) {
+    m_forgotten = 0;
+    return poles_robot;
+  }
+  const bool forgot = m_forgotten >= forgottenMetres * forgottenMetres;
+  auto poles =
+      m_tracks.take(static_cast<std::uint32_t>(tracking.minHits), forgot ? 0 : tracking.every);
+  if (!poles.empty()) m_forgotten = 0;
+  return poles;
 }
 
 /// The frame with its poles, not too many, as seen from the pose at its time stamp. Unless the

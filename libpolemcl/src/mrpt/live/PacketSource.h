@@ -40,8 +40,8 @@ class PacketSource {
   /// \param take With the index of the port. \throws Error for a file that is damaged, or has no
   /// packet to the first port.
   void receive(const Take& take);
-  /// \brief Packets of measurements come from here, so others are ignored, unless `device_ip` says
-  /// more: scans of two LiDARs on one port are not mixed.
+  /// \brief From now on only packets of this sender, unless there is an only one: packets of two
+  /// LiDARs on one port are not mixed.
   void keepTo(const in_addr& sender) {
     if (!m_device) m_device = sender;
   }

@@ -73,10 +73,8 @@ void VelodyneReceiver::doProcess() {
   m_state = ssWorking;
   m_source.receive([this](std::size_t port, const UdpPacket& packet) {
     if (port == 0) {
-      if (const auto data = accepted<Scan::TVelodyneRawPacket>(packet)) {
-        m_source.keepTo(packet.sender);
+      if (const auto data = accepted<Scan::TVelodyneRawPacket>(packet))
         takeData(*data, packet.arrival);
-      }
     } else if (const auto position = accepted<Scan::TVelodynePositionPacket>(packet)) {
       takePosition(*position, packet.arrival);
     }
@@ -89,6 +87,7 @@ std::optional<Packet> VelodyneReceiver::accepted(const UdpPacket& packet) {
     ++m_counts.ignored;
     return std::nullopt;
   }
+  m_source.keepTo(packet.sender);
   Packet content;
   std::memcpy(&content, packet.bytes.data(), sizeof content);
   return content;

@@ -41,8 +41,8 @@ enum class PoleCounting {
 struct POLEMCL_EXPORT PoleMapOptions {
   /// Length of a section of the path, m (paper: 0.25 NCLT, 1.5 KITTI and MulRan).
   double sectionLength = 1.5;
-  /// true: every scan is a keyframe; false: the scan nearest to the middle of a section is its one
-  /// keyframe (paper).
+  /// true: every scan is a keyframe, of a vehicle that stands (5 cm) the first 50; false: the scan
+  /// nearest to the middle of a section is its one keyframe (paper).
   bool everyScan = true;
   SectionMiddle middle = SectionMiddle::nearest;
   MapMerging merging = MapMerging::gated;
