@@ -282,6 +282,11 @@ TEST_F(OdometryTest, SaysWhatIsMissing) {
   OdometryReading wrong;
   wrong.pose.x = NAN;
   EXPECT_HAS(messageOf([&] { own.addOdometry(wrong); }), "must be finite");
+  wrong = readingAt(0);
+  wrong.time *= 1e9;  // nanoseconds
+  EXPECT_HAS(messageOf([&] { own.addOdometry(wrong); }), "times are seconds");
+  EXPECT_HAS(messageOf([&] { own.step(1.7e18, std::vector<PoleDetection>(), Pose2D()); }),
+             "seconds");
   own.addOdometry(readingAt(0));
   Eigen::Isometry3d wide = Eigen::Isometry3d::Identity();
   wide.linear() *= 2;
@@ -380,6 +385,7 @@ TEST_F(StreetTest, PointsBecomeTheMapOfPoleMapBuild) {
   for (std::size_t i = 0; i < number; ++i)
     builder.add(truth[i].time, io::readKittiBin(folder / "in" / "velodyne" / scanName(i)).view(),
                 truth[i].pose);
+  EXPECT_HAS(messageOf([&] { builder.save(folder / "own.csv"); }), "must end in .polemap");
   builder.save(folder / "own.polemap");
   CPoleMap expected, own;
   expected.loadFromPoleMapFile(at("map.polemap"));
@@ -394,7 +400,7 @@ TEST_F(StreetTest, PointsBecomeTheMapOfPoleMapBuild) {
     return messageOf([&] { builder.add(time, {}, {x, 0, 0}); });
   };
   EXPECT_HAS(wrong(truth[0].time, 0), "time does not increase: scan 12");
-  EXPECT_HAS(wrong(truth.back().time + 1, NAN), "pose of scan 12: x, y and yaw must be finite");
+  EXPECT_HAS(wrong(truth.back().time + 1, NAN), "the pose of scan 12 is not finite");
 }
 
 }  // namespace polemcl::test_localizer

@@ -304,8 +304,8 @@ TEST(LocalizationHealth, ScansFromOneViewpointCountAsOne) {
   feed.metres = 0;
   feed.scan(0.0);
   EXPECT_NEAR(feed.last.innovation, 1, 1e-12);  // means of m² and of matches alike
-  feed.scans(2999, 0.0);                        // five minutes beside something odd
-  feed.expect(State::ok, Reason::none);
+  feed.scans(2999, 0.0);                        // five minutes beside something odd: not lost
+  feed.expect(State::degraded, Reason::mismatch);
   EXPECT_NEAR(feed.last.matchedShare, 0.9 * (16 + 1.0 / 3001) / 17, 1e-9);  // 17 viewpoints in 8 m
   feed.metres = 0.5;
   feed.scans(37, 0.0);  // driving on, it is
@@ -486,6 +486,15 @@ TEST(LocalizationHealth, ElsewhereIsLostAndANewPoseMustProveItself) {
   feed.monitor.begin();
   feed.scan(0.9);
   feed.expect(State::degraded, Reason::converging);
+}
+
+TEST(HealthMonitor, AVehicleThatIsMovedAtRestIsNoticed) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.metres = 0;
+  for (int i = 0; i < 600; ++i) ASSERT_EQ(feed.scan(0.5).state, State::ok) << i;
+  feed.scans(50, 0.1);
+  feed.expect(State::degraded, Reason::mismatch);
 }
 
 }  // namespace polemcl::test_localization_health

@@ -111,4 +111,15 @@ TEST(OdometryCalibration, SwitchedOffItChangesNothing) {
   EXPECT_EQ(motion.covariance, Eigen::Matrix3d::Identity());
 }
 
+TEST(OdometryCalibration, StopsChangeNothing) {
+  Bench drives(0.05, 0.0009), stops(0.05, 0.0009);
+  for (int i = 0; i < 40; ++i) {
+    drives.drive(5.5);
+    stops.drive(5.5);
+    for (int k = 0; k < 100; ++k) stops.calibration.add({}, Eigen::Matrix3d::Zero(), &stops.pose);
+  }
+  EXPECT_NEAR(stops.calibration.errors().scale, drives.calibration.errors().scale, 1e-3);
+  EXPECT_NEAR(stops.calibration.errors().yaw, drives.calibration.errors().yaw, 5e-5);
+}
+
 }  // namespace polemcl::test_odometry_calibration

@@ -34,6 +34,9 @@ constexpr double kDegradedShare = 0.4;  // degraded: a smaller share of them is 
 constexpr double kDoubt = 4, kRightShare = 0.7, kWrongShare = 0.1;
 /// Scans nearer to each other than this see the same poles, m. They count less, by their distance.
 constexpr double kSamePoles = 3;
+/// Doubt grows as at this speed at least, m/s: a vehicle that is moved while its wheels stand is
+/// noticed. One that stands beside something odd is `degraded`, not lost.
+constexpr double kLeastSpeed = 0.6;
 /// Degraded: greater doubt by poles without a match that fit another pose nearby, see
 /// doubtByRivals(). It grows by one for each pole beyond these few over kSamePoles.
 constexpr double kRivalDoubt = 1;
@@ -97,8 +100,9 @@ Health HealthMonitor::update(const HealthInput& input) {
   const bool first = m_viewpoints.empty();
   const bool isGap = !first && input.time - m_time > m_maxGap;
   m_driven += input.metres;
+  const double seconds = first ? 0 : std::max(0.0, input.time - m_time);
   m_time = input.time;
-  remember(input);
+  remember(input, std::max(input.metres, kLeastSpeed * seconds));
   sumUp();
   if (first || std::any_of(input.matches.begin(), input.matches.end(),
                            [](const PoleMatch& match) { return match.confidence > 0; })) {
@@ -126,7 +130,8 @@ void HealthMonitor::learnUsual() {
   m_usual += std::min(1.0, metres / m_usualOver) * (last.seen - m_usual);
 }
 
-void HealthMonitor::remember(const HealthInput& input) {
+/// \param metres By which doubt grows.
+void HealthMonitor::remember(const HealthInput& input, double metres) {
   if (m_viewpoints.empty() || m_driven - m_viewpoints.back().driven >= kViewpoint) {
     learnUsual();
     m_viewpoints.emplace_back();
@@ -141,7 +146,7 @@ void HealthMonitor::remember(const HealthInput& input) {
     scan.squared += match.squared;
     ++scan.matches;
   }
-  doubt(scan, input.metres);
+  doubt(scan, metres);
   doubtByRivals(input);
   Viewpoint& viewpoint = m_viewpoints.back();
   const double share = 1.0 / ++viewpoint.scans;

@@ -67,7 +67,7 @@ class POLEMCL_EXPORT HealthMonitor {
     double matchedShare() const { return seen > 0 ? matched / seen : 0; }
   };
   void learnUsual();
-  void remember(const HealthInput& input);
+  void remember(const HealthInput& input, double metres);
   void doubt(const Viewpoint& scan, double metres);
   void doubtByRivals(const HealthInput& input);
   Window sumOver(double metres) const;

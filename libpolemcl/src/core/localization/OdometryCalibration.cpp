@@ -13,6 +13,7 @@ constexpr double kLength = 8;  // distance over which motions are compared, m
 constexpr double kScaleWalk =
     0.0005;  // growth of the scale's standard deviation, per root of a metre
 constexpr double kYawWalk = 1.7e-5;  // growth of the yaw bias's, rad/m per root of a metre
+constexpr double kRest = 0.001;      // m, rad: smaller motions are those of a vehicle that stands
 constexpr double kTogether = 3;      // distance over which errors of motions add up, m
 constexpr double kFurthest = 4;      // greatest innovation that is used, standard deviations
 
@@ -74,7 +75,11 @@ void OdometryCalibration::add(const Pose2D& motion, const Eigen::Matrix3d& covar
     return;
   }
   if (m_begun) {
-    m_steps.push_back({motion, covariance});
+    const bool rests = metres < kRest && std::abs(motion.yaw) < kRest;
+    if (rests && !m_steps.empty())
+      addRest(motion, covariance);
+    else
+      m_steps.push_back({motion, covariance});
     m_driven += metres;
     if (m_driven < kLength) return;
     compare(*estimate);
@@ -83,6 +88,15 @@ void OdometryCalibration::add(const Pose2D& motion, const Eigen::Matrix3d& covar
   m_begun = true;
   m_steps.clear();
   m_driven = 0;
+}
+
+/// A step at rest becomes part of the one before: a vehicle may be parked for days.
+void OdometryCalibration::addRest(const Pose2D& motion, const Eigen::Matrix3d& covariance) {
+  Step& last = m_steps.back();
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = rotationOf(last.motion.yaw);
+  last.motion = compose(last.motion, motion);
+  last.covariance += turn * covariance * turn.transpose();
 }
 
 /// The motion of all steps, corrected.

@@ -49,6 +49,7 @@ class POLEMCL_EXPORT OdometryCalibration {
     Pose2D motion;
     Eigen::Matrix3d covariance;
   };
+  void addRest(const Pose2D& motion, const Eigen::Matrix3d& covariance);
   Pose2D chain(double scale, double yaw) const;
   Eigen::Matrix3d walkedCovariance() const;
   void compare(const PoseWithCovariance& estimate);

@@ -178,7 +178,8 @@ LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
   if (m_stepped) covariance += frame.motion->covariance;
   m_submap.add(motion, covariance, frame.poles_robot);
   m_tracked = frame;
-  if (m_stepped) m_forgotten += spreadBy(frame.motion->covariance, m_options.filter);
+  const double spread = m_stepped ? spreadBy(frame.motion->covariance, m_options.filter) : 0;
+  if (metres * metres < spread) m_forgotten += spread;
   m_isFirst = !m_hadPoles;
   m_hadPoles |= !frame.poles_robot.empty();
   m_tracked.poles_robot = polesForFilter(motion, covariance, frame.poles_robot);
@@ -232,10 +233,8 @@ std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
     return poles_robot;
   }
   const bool forgot = m_forgotten >= forgottenMetres * forgottenMetres;
-  auto poles =
-      m_tracks.take(static_cast<std::uint32_t>(tracking.minHits), forgot ? 0 : tracking.every);
-  if (!poles.empty()) m_forgotten = 0;
-  return poles;
+  if (forgot) m_forgotten = 0;
+  return m_tracks.take(static_cast<std::uint32_t>(tracking.minHits), forgot ? 0 : tracking.every);
 }
 
 /// The frame with its poles, not too many, as seen from the pose at its time stamp. Unless the

@@ -103,9 +103,8 @@ class POLEMCL_EXPORT LocalizationPipeline {
   /// Poles are seen again over this distance: what chance matches say about the place is new only
   /// after it, m. See NewShares.
   static constexpr double decorrelationMetres = 10;
-  /// Poles are used again, wherever the vehicle is, when the motions since the last ones have
-  /// spread the particles by so much at `leverMetres` from the vehicle, m: at rest, the odometry
-  /// forgets.
+  /// Poles are used again when motions that are shorter than their own spread have spread the
+  /// particles this far, at `leverMetres` from the vehicle, m: at rest, the odometry forgets.
   static constexpr double forgottenMetres = 0.05, leverMetres = 10;
   /// The same for all poles of a coarse map, m. Over longer distances the errors of its poles
   /// remain alike, but the odometry forgets what they said.
@@ -165,7 +164,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
   std::vector<PoleMatch> m_matches;
   PoseWithCovariance m_estimate;
   bool m_hasPose = false, m_started = false, m_stepped = false;
-  double m_forgotten = 0;     ///< variance of the motions since the filter last got poles, m²
+  double m_forgotten = 0;     ///< variance at rest since poles were used again, m²
   bool m_hadPoles = false;    ///< in an earlier frame
   bool m_isFirst = false;     ///< no frame before this one had poles
   bool m_mistrusted = false;  ///< the submap was restarted because poles did not match
