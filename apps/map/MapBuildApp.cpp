@@ -197,7 +197,7 @@ void addShares(const MapBuildSummary& summary, std::map<std::string, std::string
   }
 }
 
-/// A number among the facts of a map; 0 if there is none.
+/// A count in the info of a map; 0 where it has no such key.
 std::size_t numberOf(const std::map<std::string, std::string>& info, const std::string& key) {
   const auto fact = info.find(key);
   return fact == info.end() ? 0 : std::strtoul(fact->second.c_str(), nullptr, 10);
