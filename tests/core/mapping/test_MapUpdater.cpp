@@ -322,16 +322,6 @@ TEST(MapUpdater, AMovedPoleLeavesWhenTheNewOneEnters) {
   EXPECT_NEAR(presentPoles(map)[0].x, 10.9, 0.05);
 }
 
-TEST(MapUpdater, APoleOnTheMapDoesNotGoForACandidate) {
-  LandmarkMap map = kept({{10, 5}});
-  map.poles[0].history.existence = 0.99;
-  std::vector<SessionScan> scans = glimpses({10.55, 5}, {2, 8, 14, 20}, 11);
-  for (SessionScan& scan : scans) scan.poles_robot[0].y += 0.1;  // into the gate, then out of it
-  scans[3].poles_robot[0].y -= 0.2;
-  map = updatedBy(map, scans);
-  EXPECT_EQ(presentPoles(map).size(), 1u);
-}
-
 TEST(MapUpdater, ANeighbourThatIsNotSeenStays) {
   // 0.42 m apart, both mapped; the far one is out of the range in which a pole is expected.
   MapUpdateOptions upkeep;
