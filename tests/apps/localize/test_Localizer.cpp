@@ -283,7 +283,7 @@ TEST_F(OdometryTest, SaysWhatIsMissing) {
   wrong.pose.x = NAN;
   EXPECT_HAS(messageOf([&] { own.addOdometry(wrong); }), "must be finite");
   wrong = readingAt(0);
-  wrong.time *= 1e9;  // nanoseconds
+  wrong.time = 1.7e18;  // nanoseconds
   EXPECT_HAS(messageOf([&] { own.addOdometry(wrong); }), "times are seconds");
   EXPECT_HAS(messageOf([&] { own.step(1.7e18, std::vector<PoleDetection>(), Pose2D()); }),
              "seconds");
