@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <set>
 #include <sstream>
 
@@ -198,9 +197,9 @@ void addShares(const MapBuildSummary& summary, std::map<std::string, std::string
 }
 
 /// A count in the info of a map; 0 where it has no such key.
-std::size_t numberOf(const std::map<std::string, std::string>& info, const std::string& key) {
+double countIn(const std::map<std::string, std::string>& info, const std::string& key) {
   const auto fact = info.find(key);
-  return fact == info.end() ? 0 : std::strtoul(fact->second.c_str(), nullptr, 10);
+  return fact == info.end() ? 0 : io::parseNumber(fact->second).value_or(0);
 }
 
 std::map<std::string, std::string> facts(const AllSettings& settings,
@@ -234,8 +233,8 @@ std::map<std::string, std::string> facts(const AllSettings& settings,
   if (!job.add) return info;
   if (before.count("poses") > 0) info["poses"] = before.at("poses");
   for (const char* key : {"loops", "fixes"}) {
-    const std::size_t sum = numberOf(info, key) + numberOf(before, key);
-    if (sum > 0) info[key] = std::to_string(sum);
+    const double sum = countIn(info, key) + countIn(before, key);
+    if (sum > 0) info[key] = io::fixed(sum, 0);
   }
   return info;
 }

@@ -89,7 +89,7 @@ struct MappingScan {
 struct PoleMapResult {
   std::vector<MapPole> poles;        ///< map frame, sorted by x then y
   double pathLength = 0;             ///< over all drives, scans not used included, m
-  std::size_t sections = 0;          ///< along the path
+  std::size_t sections = 0;          ///< along the path, without those of unused scans only
   std::size_t occupiedSections = 0;  ///< with at least one scan: only these count and break runs
   std::size_t keyframes = 0;         ///< one scan of each occupied section, or all
   std::size_t detections = 0;        ///< used
