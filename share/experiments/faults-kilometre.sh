@@ -1,7 +1,7 @@
 #!/bin/sh
 # Checks on a real drive whether the localization notices faults, and recovers: those of faults.sh, put into the first
 # half of the real kilometre. Map of the even key frames and localization on the odd ones, and the other way round
-# (3.6 m apart, 2.4 scans a second), with a real laser odometry. 100 trials each; since the drive has 400 m, they overlap.
+# (3.5 m apart, 1.8 scans a second), with a real laser odometry. 100 trials each; since the drive has 400 m, they overlap.
 # Usage: share/experiments/faults-kilometre.sh DATA_DIR KILOMETRE OUT
 #   DATA_DIR   folder with kitti_odom_00_km/ and kitti_raw_0005/, whose map is the wrong one
 #   KILOMETRE  the scans of DATA_DIR/kitti_odom_00_km as a folder (its README.md says how to lay them out)
