@@ -22,15 +22,12 @@ All programs with `--config` read one INI file. It needs only the keys that diff
 model = hdl32e      ; which LiDAR
 height_m = 1.0      # metres above the ground
 ```
-- `--set SECTION.KEY=VALUE` puts a value in the place of the file's.
-- `--config` takes a path or the name of an installed file. `config/nclt.ini`, as these pages write it, and `nclt.ini` both work in any folder: what is not
-  there is looked for in `/usr/share/polemcl/config`.
-- `--print-config` prints the effective settings of the tiers *sensor* and *tuning*, `--print-config --all` all of them;
-  the program then ends.
-- The defaults were chosen by measuring, between LiDARs and drives: one may be better for yours. Those of `config/paper/` are the paper's.
-- Angles are in degrees in files and rounded on these pages. A number outside the allowed values is refused, with file,
-  section, key and what is allowed. Unknown sections and keys are refused as well, but for the sections of the simulator
-  and of the view in programs that have no use for them.
+- `--set SECTION.KEY=VALUE` replaces a value of the file.
+- `--config` takes a path or the name of an installed file: `nclt.ini` and `config/nclt.ini` work in any folder.
+- `--print-config` prints the settings in effect, without those of the tier *expert*; with `--all` all of them.
+- The defaults were chosen by measuring, between LiDARs and drives: another value may be better for yours. Those of `config/paper/` are the paper's.
+- Angles are in degrees, and rounded on these pages.
+- Unknown sections and keys are refused, and numbers outside the allowed values. Sections of the simulator and of the view may stand in the file of any program.
 
 | tier | who sets it |
 |---|---|
@@ -59,7 +56,7 @@ const std::vector<std::string> kUsual{"sensor.model",
 constexpr const char* s_columns =
     "| key | meaning | default | unit | allowed | tier |\n|---|---|---|---|---|---|\n";
 constexpr const char* s_foot = R"(
-These pages are made from the source code; a test compares them. To make them anew:
+These pages are made from the source code:
 `POLEMCL_WRITE_PAGES=1 build/bin/test_config --gtest_filter='SettingsPage.*'`
 )";
 
@@ -147,43 +144,45 @@ class PageBinder : public Binder {
   std::size_t m_open = 0;
 };
 
-/// The page of a group, and its rows of the table of sections.
+/// The page of a group, and its row of the table of sections.
 struct GroupPage {
-  std::string text, rows;
+  std::string text, row;
 };
 GroupPage pageOf(const Group& group, const PageBinder& binder) {
   GroupPage page;
-  std::string first = "[" + group.title + "](" + group.name + ".md)";
+  page.row = "| [" + group.title + "](" + group.name + ".md) |";
   page.text =
       "# Settings: " + group.title + "\n\n[Settings](settings.md) says how an INI file works.\n";
   std::istringstream names(group.sections);
   for (std::string name; names >> name;) {
     const PageBinder::Section& section = binder.section(name);
     page.text += "\n## [" + name + "]\n" + section.comment + ".\n\n" + s_columns + section.rows;
-    page.rows += "| " + first + " | [`[" + name + "]`](" + group.name + ".md#" + name + ") | " +
-                 cell(section.comment) + " |\n";
-    first.clear();
+    page.row += (page.row.back() == '|' ? " [`[" : ", [`[") + name + "]`](" + group.name + ".md#" +
+                name + ")";
   }
   if (group.name == s_labelled) {
     page.text += s_lidars;
-    page.rows += "| | [`[sensor:LABEL]` and others](" + group.name +
-                 ".md#sensorlabel-range_imagelabel-scan_linelabel) | What differs for one of "
-                 "several LiDARs |\n";
+    page.row += ", [`[sensor:LABEL]` and others](" + group.name +
+                ".md#sensorlabel-range_imagelabel-scan_linelabel)";
   }
+  page.row += " |\n";
   return page;
 }
 
-/// The table of the settings that people set.
+/// The table of the settings that people set, without what is allowed and the tier.
 std::string usualSettings(const PageBinder& binder) {
-  std::string text = "\n## The fifteen that people set\n| section |" + std::string(s_columns + 1);
-  text.insert(text.find("|---"), "|---");
+  std::string text =
+      "\n## The fifteen that people set\n| section | key | meaning | default | unit |\n"
+      "|---|---|---|---|---|\n";
   for (const std::string& name : kUsual) {
     const std::size_t dot = name.find('.');
     const std::string sectionName = name.substr(0, dot), start = "| `" + name.substr(dot + 1) + "`";
     const std::string& rows = binder.section(sectionName).rows;
     const std::size_t at = rows.find(start);
     if (at == rows.npos) throw Error("there is no setting " + name);
-    text += "| `[" + sectionName + "]` " + rows.substr(at, rows.find('\n', at) + 1 - at);
+    std::size_t end = at;
+    for (int column = 0; column < 4; ++column) end = rows.find(" | ", end + 1);
+    text += "| `[" + sectionName + "]` " + rows.substr(at, end - at) + " |\n";
   }
   return text + "\n## Sections\n";
 }
@@ -211,11 +210,11 @@ std::map<std::string, std::string> settingsPages() {
   std::map<std::string, std::string> pages;
   std::string& index = pages["settings.md"] = s_head;
   index += usualSettings(binder);
-  index += "| page | section | sets |\n|---|---|---|\n";
+  index += "| page | sections |\n|---|---|\n";
   for (const Group& group : groups()) {
     const GroupPage page = pageOf(group, binder);
     pages[group.name + ".md"] = page.text;
-    index += page.rows;
+    index += page.row;
   }
   index += s_foot;
   return pages;
