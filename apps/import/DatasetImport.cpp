@@ -12,6 +12,7 @@
 #include "cli/RawlogActions.h"
 #include "config/TimingComment.h"
 #include "core/common/Angles.h"
+#include "core/common/DetectionCheck.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/KittiOdometry.h"
 #include "io/dataset/KittiRaw.h"
@@ -38,6 +39,7 @@ io::ScanFolder readBag(const ImportOptions& options) {
   bag.topics = options.topics;
   bag.readsSensorPose = !options.T_robot_sensor;
   bag.readsTiming = !options.timing && !std::filesystem::exists(timingFile(options));
+  bag.readsOdometry = !options.odometry;
   return io::readRosbag2(options.input, bag);
 }
 
@@ -142,6 +144,15 @@ std::vector<mrpt::obs::CObservationGPS::Ptr> gnssObservations(const io::ScanFold
   std::vector<mrpt::obs::CObservationGPS::Ptr> observations;
   for (const GnssFix& fix : folder.fixes) observations.push_back(gnssObservation(fix));
   return observations;
+}
+
+void checkTimes(const ImportOptions& options, const io::ScanFolder& folder) {
+  for (const io::ScanEntry& scan : folder.scans)
+    if (!isTimeInSeconds(scan.time))
+      throw Error(options.input.string() + ": " + scan.cloud.filename().string() +
+                  " has the time " + io::significant(scan.time, 17) +
+                  "; seconds from 0 to 1e11 are allowed (larger ones look like milli-, micro- or "
+                  "nanoseconds)");
 }
 
 void checkSelection(const ImportOptions& options, const io::ScanFolder& folder) {
@@ -249,6 +260,7 @@ ImportReport importDataset(const ImportOptions& options,
   if (options.poses) io::takeTumPoses(folder, *options.poses, robotIn(options.posesOfSensor));
   if (options.odometry)
     io::takeTumMotions(folder, *options.odometry, robotIn(options.odometryOfSensor));
+  checkTimes(options, folder);
   checkSelection(options, folder);
 
   ImportReport report;

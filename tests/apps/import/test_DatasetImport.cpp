@@ -319,6 +319,17 @@ TEST_F(DatasetImport, RefusesWhenAllSelectedScansAreEmpty) {
   EXPECT_EQ(names(folder.path()), std::vector<std::string>({"in"}));
 }
 
+TEST_F(DatasetImport, RefusesTimesThatAreNotInSeconds) {
+  for (const char* times : {"1700000000000000000\n1700000000100000000\n", "-1\n0\n"}) {
+    writeLine(options.input, 2);
+    std::ofstream(options.input / "times.txt") << times;
+    const std::string error = errorOf();
+    EXPECT_NE(error.find("000000.bin has the time "), std::string::npos) << error;
+    EXPECT_NE(error.find("seconds from 0 to 1e11 are allowed"), std::string::npos) << error;
+    EXPECT_FALSE(fs::exists(options.output));
+  }
+}
+
 TEST_F(DatasetImport, RefusesATruncatedScan) {
   writeLine(options.input, 3);
   writeText(options.input / "velodyne" / scanName(2), "17 bytes are bad!");

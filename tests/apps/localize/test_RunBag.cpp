@@ -43,7 +43,7 @@ TEST_F(RunBag, HoldsThePosesOfTheFirstRun) {
     EXPECT_EQ(link.header.frame, "map");
     EXPECT_EQ(link.child, "base_link");
     EXPECT_NEAR(link.header.time, poses[i].time, 1e-6);
-    const auto& T = link.T_parent_child;
+    const auto& T = *link.T_parent_child;
     EXPECT_NEAR(T(0, 3), poses[i].pose.x, 1e-6);
     EXPECT_NEAR(T(1, 3), poses[i].pose.y, 1e-6);
     EXPECT_NEAR(wrapAngle(std::atan2(T(1, 0), T(0, 0)) - poses[i].pose.yaw), 0, 1e-6);

@@ -108,6 +108,50 @@ TEST_F(Rosbag2Test, SaysWhereTheLidarStandsOrThatNobodySays) {
   for (const std::string& note : load().notes) EXPECT_EQ(note.find("LiDAR"), std::string::npos);
 }
 
+TEST_F(Rosbag2Test, OneWrongStampCostsOneScan) {
+  for (const double time : {0.5, 0.6, 3600.0, 0.7, 0.8, -9.0, 0.9})
+    bag->add(clouds, static_cast<std::int64_t>(10 * time), cloudAt(time));
+  bag->run("UPDATE messages SET timestamp = id");
+  const ScanFolder folder = load();
+  ASSERT_EQ(folder.scans.size(), 5u);
+  EXPECT_EQ(folder.scans[1].time, kStart + 0.6);
+  EXPECT_EQ(folder.scans[2].time, kStart + 0.7);
+  EXPECT_EQ(folder.scans[4].time, kStart + 0.9);
+  expectNote(folder, "2 of 7 scans left out, stamped not later");
+}
+
+TEST_F(Rosbag2Test, MessagesWithoutAPoseAreLeftOut) {
+  writeDrive(3, {});
+  bag->add(odometry, 50, odometryAt({0.05, NAN}));
+  CdrWriter link;
+  link.put(std::uint32_t{1}).header(0, "base_link").text("camera").zeros(7);
+  bag->add(transforms, 0, link.message());
+  const ScanFolder folder = load();
+  EXPECT_EQ(folder.scans.size(), 3u);
+  expectNote(folder, "/odom: 5 messages, 1 ignored: numbers that are not finite, or no rotation");
+  expectNote(folder, "static transforms that are no rotation are left out: base_link to camera");
+}
+
+TEST_F(Rosbag2Test, OdometryThatIsNotReadMayBeAnything) {
+  writeDrive(3, {});
+  bag->add(transforms, 0, transformsMessage({{"base_link", "lidar", 1, 0, 2, 0}}));
+  bag->add(odometry, 1000, odometryAt({0.15, 0, 0, 0, {}, "trailer"}));
+  bag->add(clouds, 1000, cloudAt(9));
+  options.readsOdometry = false;
+  const ScanFolder folder = load();
+  EXPECT_EQ(folder.scans.size(), 4u);
+  EXPECT_FALSE(folder.scans[1].motion);
+  EXPECT_EQ(folder.T_robot_sensor.value().translation().x(), 1);
+  bag->add(bag->topic("/wheels", odometry2), 0, odometryAt({0}));
+  EXPECT_EQ(load().scans.size(), 4u);
+}
+
+TEST_F(Rosbag2Test, ScansThatBeginAtAMovingAzimuth) {
+  for (int i = 0; i < 40; ++i)
+    bag->add(clouds, i, turningCloud(kStart + 0.1 * i, -1, 3 - 0.05 * i, -0.1, 0.1).message());
+  EXPECT_TRUE(load().timing.movingCut);
+}
+
 TEST_F(Rosbag2Test, RefusesCloudsInTheFrameOfTheOdometry) {
   bag->add(clouds, 0, cloudAt(0.1, "odom"));
   bag->add(odometry, 0, odometryAt({}));

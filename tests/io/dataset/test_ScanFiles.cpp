@@ -51,6 +51,12 @@ TEST_F(ScanFilesTest, RefusesBadInput) {
   EXPECT_EQ(listFiles(path("p"), ".bin").size(), 4u);
   for (const char* name : {"d/1.bin", "d/10.bin", "d/2.bin"}) write(name, "");
   EXPECT_REFUSED(listFiles(path("d"), ".bin"), "2.bin", "10.bin", "same number of digits");
+  for (const char* name : {"s/scan_9.bin", "s/scan_10.bin", "t/9.9.bin", "t/10.0.bin"})
+    write(name, "");
+  EXPECT_REFUSED(listFiles(path("s"), ".bin"), "scan_9.bin", "scan_10.bin");
+  EXPECT_REFUSED(listFiles(path("t"), ".bin"), "9.9.bin", "10.0.bin");
+  for (const char* name : {"u/1700000000.1758.bin", "u/1700000000.2.bin"}) write(name, "");
+  EXPECT_EQ(listFiles(path("u"), ".bin").size(), 2u);
 }
 
 TEST_F(ScanFilesTest, Ranges) {

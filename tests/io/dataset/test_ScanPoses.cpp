@@ -127,6 +127,22 @@ TEST_F(ScanPosesTest, TakesMotionsFromAnOdometryOfTheSensor) {
                  "no odometry at the time of any scan");
 }
 
+TEST_F(ScanPosesTest, RefusesAnOdometryInAnotherFrameThanAVehicles) {
+  ScanFolder folder = line(4);
+  EXPECT_REFUSED(takeTumMotions(folder,
+                                write("camera.tum",
+                                      "10 0 0 0 0 0 0 1\n11 0 0 1 0 0 0 1\n"
+                                      "12 0 0 2 0 0 0 1\n13 0.1 0 3 0 0 0 1\n"),
+                                identity),
+                 "camera.tum: it moves 3.0 m along z and 0.1 m in x and y", "z up is expected");
+  EXPECT_REFUSED(takeTumMotions(folder,
+                                write("down.tum",
+                                      "10 0 0 0 1 0 0 0\n11 1 0 0 1 0 0 0\n"
+                                      "12 2 0 0 1 0 0 0\n13 3 0 0 1 0 0 0\n"),
+                                identity),
+                 "down.tum: its z axis points down");
+}
+
 TEST_F(ScanPosesTest, RefusesTimesThatDoNotOverlap) {
   ScanFolder folder = line(3);
   const fs::path file = write("p.tum", "20 1 0 0 0 0 0 1\n21.5 2 0 0 0 0 0 1\n");

@@ -83,9 +83,35 @@ TEST(PointTimes, SaysWhyNothingIsFound) {
   for (std::size_t i = 0; i < scan.offsets.size(); ++i)
     scan.offsets[i] = 0.1 * static_cast<double>(i * 7919 % 1800) / 1800;
   expectNone({good, scan}, "do not follow their azimuths");
-  expectNone({good, turn(1, 1, 0)}, "begin at different azimuths");
-  expectNone({good, turn(-1, 0, 0)}, "begin at different azimuths");
+  const RosCloud ordered = turn(1, 1, 0);
+  RosCloud mixed = ordered;
+  for (std::size_t i = 0; i < mixed.cloud.size(); ++i) {
+    const std::size_t from = i * 7919 % mixed.cloud.size();
+    mixed.cloud.x[i] = ordered.cloud.x[from];
+    mixed.cloud.y[i] = ordered.cloud.y[from];
+    mixed.offsets[i] = ordered.offsets[from];
+  }
+  expectNone({good, mixed}, "begin at different azimuths, and their points are not in the order");
+  expectNone({good, turn(-1, 0, 0)}, "turn in different ways");
+  expectNone({turn(1, 0, 0, 100)}, "turns of 100 s; uint32 in ns, float32 and float64 in s");
+  expectNone({turn(1, 0, 0, 0.0001)}, "turns of 0.0001 s");
   expectNone({turn(1, 0, 4000)}, "far from the stamps");
+}
+
+// As of a driver that cuts after a number of packets: seen in the first scans only if it moves
+// fast.
+TEST(PointTimes, ScansThatBeginAtAMovingAzimuth) {
+  TimingEstimate estimate;
+  for (int i = 0; i < 5; ++i) estimate.add(turn(-1, 2 - 0.05 * i, 0));
+  EXPECT_TRUE(estimate.complete());
+  EXPECT_FALSE(estimate.timing().movingCut);
+  estimate.add(turn(-1, 2 - 0.05 * 40, 0));
+  const ScanTiming timing = estimate.timing();
+  EXPECT_TRUE(timing.movingCut);
+  EXPECT_EQ(timing.turn, Turn::clockwise);
+  EXPECT_NEAR(timing.seconds, 0.1, 1e-5);
+  EXPECT_NEAR(timing.stamp, 0, 0.001);
+  expectIn(estimate.note(), "clockwise, each from its first point on, stamped at 0 of the turn");
 }
 
 TEST(PointTimes, AreToldOfScansInHand) {

@@ -16,7 +16,7 @@ TEST(RosResults, TransformsAreThoseThatOurReaderReads) {
   EXPECT_EQ(links[0].header.time, 12.25);
   EXPECT_EQ(links[0].header.frame, "map");
   EXPECT_EQ(links[0].child, "base_link");
-  const auto& T = links[0].T_parent_child;
+  const auto& T = *links[0].T_parent_child;
   EXPECT_NEAR((T.translation() - Eigen::Vector3d(3, -4, 0)).norm(), 0, 1e-15);
   EXPECT_NEAR(std::atan2(T(1, 0), T(0, 0)), 0.5, 1e-12);
 }

@@ -126,6 +126,20 @@ TEST_F(PoleSequenceTest, BareOdometryIsInterpolated) {
   EXPECT_NEAR((sequence.frames[1].motion->covariance - expected).norm(), 0, 1e-6);
 }
 
+TEST_F(PoleSequenceTest, ScansInAGapOfTheOdometryAreLeftOut) {
+  std::string bytes;
+  for (int i = 0; i <= 80; ++i) {
+    if (i <= 20 || i >= 50) bytes += odometry(100 + 0.1 * i, {0.2 * i, 1, 0});
+    if (i % 10 == 5) bytes += samples::bytesOf(poles(100 + 0.1 * i));
+  }
+  const auto sequence = bench.read(bytes);
+  ASSERT_EQ(sequence.frames.size(), 5u);  // not those at 102.5, 103.5 and 104.5 s
+  EXPECT_EQ(sequence.counts.unknownMotions, 3u);
+  expectMotion(sequence.frames[1], 2, 0, 0);
+  EXPECT_NEAR(sequence.frames[2].time, 105.5, 1e-6);
+  expectMotion(sequence.frames[2], 8, 0, 0);
+}
+
 TEST_F(PoleSequenceTest, OdometryThatTurns) {
   const auto sequence = bench.read(odometry(0, {3, 4, M_PI / 2}) + samples::bytesOf(poles(0)) +
                                    odometry(2, {3, 6, M_PI}) + samples::bytesOf(poles(2)));

@@ -61,9 +61,10 @@ std::optional<std::size_t> chooseTopic(const Bag& bag, const std::string& type,
   return found.empty() ? std::nullopt : std::optional(found.front());
 }
 
-FrameTree readFrames(const Bag& bag) {
+FrameTree readFrames(const Bag& bag, std::vector<std::string>& notes) {
   constexpr std::string_view kEnding = "tf_static";
   FrameTree frames;
+  std::string invalid;
   for (std::size_t i = 0; i < bag.topics().size(); ++i) {
     const BagTopic& topic = bag.topics()[i];
     const bool isStatic =
@@ -71,31 +72,55 @@ FrameTree readFrames(const Bag& bag) {
         topic.name.compare(topic.name.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
     if (topic.type != kTransformsType || !isStatic) continue;
     for (const BagMessage& message : bag.messages(i))
-      for (const auto& link : decodeTransforms(bag.read(message), bag.place(message)))
-        frames.add(link.header.frame, link.child, link.T_parent_child);
+      for (const auto& link : decodeTransforms(bag.read(message), bag.place(message))) {
+        if (link.T_parent_child)
+          frames.add(link.header.frame, link.child, *link.T_parent_child);
+        else
+          invalid += (invalid.empty() ? "" : ", ") + link.header.frame + " to " + link.child;
+      }
   }
+  if (!invalid.empty())
+    notes.push_back("static transforms that are no rotation are left out: " + invalid);
   return frames;
+}
+
+/// The longest sequence of scans whose times increase: one wrong stamp costs one scan.
+std::vector<ScanEntry> longestIncreasing(const std::vector<ScanEntry>& scans) {
+  std::vector<std::size_t> ends;  // of the best sequence of each length
+  std::vector<std::size_t> before(scans.size());
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const auto isEarlier = [&](std::size_t end, double time) { return scans[end].time < time; };
+    const auto place = std::lower_bound(ends.begin(), ends.end(), scans[i].time, isEarlier);
+    if (place != ends.begin()) before[i] = *std::prev(place);
+    if (place == ends.end())
+      ends.push_back(i);
+    else
+      *place = i;
+  }
+  std::vector<ScanEntry> result(ends.size());
+  std::size_t scan = ends.empty() ? 0 : ends.back();
+  for (std::size_t i = result.size(); i-- > 0; scan = before[scan]) result[i] = scans[scan];
+  return result;
 }
 
 /// The scans with their stamps. \param frame Set to the frame of the clouds.
 ScanFolder listScans(const Bag& bag, std::size_t topic, std::string& frame) {
   ScanFolder folder;
-  std::size_t unordered = 0, all = 0;
   for (const BagMessage& message : bag.messages(topic)) {
     const std::string where = bag.place(message);
     const std::string bytes = bag.read(message, kHeaderBytes);
     CdrReader reader(bytes, where);
     const RosHeader header = readHeader(reader);
-    if (all++ == 0) frame = header.frame;
+    if (folder.scans.empty()) frame = header.frame;
     if (header.frame != frame)
       throw Error(where + "frame " + header.frame + ", that of the clouds before is " + frame +
                   "; one LiDAR a topic is allowed");
-    if (!folder.scans.empty() && !(header.time > folder.scans.back().time))
-      ++unordered;
-    else
-      folder.scans.push_back(
-          {bag.file(message), static_cast<std::uint64_t>(message.id), header.time});
+    folder.scans.push_back(
+        {bag.file(message), static_cast<std::uint64_t>(message.id), header.time});
   }
+  const std::size_t all = folder.scans.size();
+  folder.scans = longestIncreasing(folder.scans);
+  const std::size_t unordered = all - folder.scans.size();
   if (2 * unordered > all)
     throw Error(bag.path().string() + ": " + bag.topics()[topic].name + ": the stamps of " +
                 std::to_string(unordered) + " of " + std::to_string(all) +
@@ -111,12 +136,16 @@ RosCloud readScan(const Bag& bag, std::size_t topic, const ScanEntry& scan, bool
   return decodeCloud(bag.read(message), bag.place(message), withTimes);
 }
 
+/// From the first scans and some of the rest: the azimuth at which they begin may move slowly.
 void estimateTiming(const Bag& bag, std::size_t topic, ScanFolder& folder) {
+  constexpr std::size_t kRest = 20;
   TimingEstimate estimate;
-  for (const ScanEntry& scan : folder.scans) {
-    if (estimate.complete()) break;
-    estimate.add(readScan(bag, topic, scan, true));
-  }
+  std::size_t i = 0;
+  for (; i < folder.scans.size() && !estimate.complete(); ++i)
+    estimate.add(readScan(bag, topic, folder.scans[i], true));
+  const std::size_t step = 1 + (folder.scans.size() - i) / kRest;
+  for (; i < folder.scans.size(); i += step)
+    estimate.add(readScan(bag, topic, folder.scans[i], true));
   folder.timing = estimate.timing();
   folder.notes.push_back(estimate.note());
 }
@@ -140,13 +169,14 @@ void findSensorPose(const FrameTree& frames, const std::string& robot, const std
                          "; --sensor-pose states its pose");
 }
 
+RosOdometry firstOdometry(const Bag& bag, std::size_t topic) {
+  const BagMessage first = bag.messages(topic).front();
+  return decodeOdometry(bag.read(first), bag.place(first));
+}
+
 /// Clouds that a LiDAR odometry has moved have lost the place they were seen from.
 void requireOwnFrame(const Bag& bag, std::size_t clouds, const std::string& frame,
-                     std::size_t odometry) {
-  const std::vector<BagMessage>& messages = bag.messages(odometry);
-  if (messages.empty()) return;
-  const BagMessage& first = messages.front();
-  const RosOdometry motion = decodeOdometry(bag.read(first), bag.place(first));
+                     const RosOdometry& motion) {
   if (frame.empty() || frame == motion.child || frame != motion.header.frame) return;
   throw Error(bag.path().string() + ": " + bag.topics()[clouds].name + ": these clouds are in " +
               frame +
@@ -185,8 +215,11 @@ ScanFolder readRosbag2(const fs::path& path, const Rosbag2Options& options) {
   if (!clouds)
     throw Error(path.string() + ": no clouds: a topic of " + kCloudType + " is needed, it has " +
                 listTopics(*bag) + "; packets of a LiDAR become clouds in its driver");
-  const auto odometry =
-      chooseTopic(*bag, kOdometryType, options.topics.odometry, "--odometry-topic");
+  const bool ignoresOdometry = !options.readsOdometry && options.topics.odometry.empty() &&
+                               topicsOf(*bag, kOdometryType).size() > 1;
+  std::optional<std::size_t> odometry;
+  if (!ignoresOdometry)
+    odometry = chooseTopic(*bag, kOdometryType, options.topics.odometry, "--odometry-topic");
   std::optional<std::size_t> imu;
   if (!options.topics.imu.empty()) {
     imu = chooseTopic(*bag, kImuType, options.topics.imu, "--imu-topic");
@@ -198,12 +231,13 @@ ScanFolder readRosbag2(const fs::path& path, const Rosbag2Options& options) {
   ScanFolder folder = listScans(*bag, *clouds, sensor);
   const std::vector<std::string> notes = bag->notes();
   folder.notes.insert(folder.notes.begin(), notes.begin(), notes.end());
-  const FrameTree frames = readFrames(*bag);
+  const FrameTree frames = readFrames(*bag, folder.notes);
   if (odometry) {
-    requireOwnFrame(*bag, *clouds, sensor, *odometry);
-    const std::string child = addRosbagMotions(*bag, *odometry, imu, frames, folder);
-    if (!child.empty()) robot = child;
-  } else {
+    const RosOdometry first = firstOdometry(*bag, *odometry);
+    requireOwnFrame(*bag, *clouds, sensor, first);
+    if (!first.child.empty()) robot = first.child;
+    if (options.readsOdometry) addRosbagMotions(*bag, *odometry, imu, frames, folder);
+  } else if (options.readsOdometry) {
     noteTransforms(*bag, folder);
   }
   findFixes(*bag, options.topics.fixes, frames, robot, folder);

@@ -18,6 +18,7 @@ struct RosbagTopics {
 struct Rosbag2Options {
   RosbagTopics topics;
   bool readsSensorPose = true;  ///< from /tf_static
+  bool readsOdometry = true;    ///< the motions; if not, its topic only names the robot
   bool readsTiming = true;      ///< from the times of the points
 };
 
@@ -29,7 +30,7 @@ struct Rosbag2Options {
 /// transform from the frame of the clouds to that frame; without it nothing is set, with a note.
 /// The timing comes from the times of the points, see TimingEstimate. Positions from satellites are
 /// those of the only topic of their type; if several have them and none is chosen, there are none,
-/// with a note.
+/// with a note. Scans whose stamps do not increase are left out: the fewest possible.
 /// \param bag Folder, or one `.db3` or `.mcap` file.
 /// \throws Error with the file, the topic and the id of the message: as Bag, several topics of a
 ///         type and none of them chosen, no clouds, stamps that do not increase, a message that

@@ -23,7 +23,8 @@ struct MeasuredTrack {
   explicit MeasuredTrack(const std::vector<double>& times, double gap) : poses(times, gap) {}
   TrackSampler poses;  ///< in the odometry frame; of an IMU, the yaw only
   MotionSteps steps;   ///< those with covariances
-  std::size_t messages = 0, uncertain = 0, unordered = 0;  ///< all; without covariance; not later
+  /// All; without a covariance; not later than the one before; without a pose.
+  std::size_t messages = 0, uncertain = 0, unordered = 0, invalid = 0;
   std::vector<double> gapEnds;  ///< of an IMU: times of the messages that came too late, s
 };
 
@@ -32,6 +33,9 @@ void noteTrack(const BagTopic& topic, const MeasuredTrack& track, std::vector<st
   if (track.unordered > 0)
     notes.push_back(of + std::to_string(track.unordered) +
                     " ignored: not later than the message before");
+  if (track.invalid > 0)
+    notes.push_back(of + std::to_string(track.invalid) +
+                    " ignored: numbers that are not finite, or no rotation");
   if (track.uncertain > 0)
     notes.push_back(of + std::to_string(track.uncertain) +
                     " without a covariance; motions without one get 2 % of each component");
@@ -60,10 +64,14 @@ MeasuredTrack readOdometry(const Bag& bag, std::size_t topic, const std::vector<
     const std::string where = bag.place(message);
     RosOdometry odometry = decodeOdometry(bag.read(message), where);
     if (track.messages++ == 0) child = odometry.child;
+    if (!odometry.T_odom_child) {
+      ++track.invalid;
+      continue;
+    }
     if (odometry.child != child)
       throw Error(where + "child frame " + odometry.child + ", that of the messages before is " +
                   child + "; one robot a topic is allowed");
-    if (!track.poses.add(odometry.header.time, odometry.T_odom_child)) {
+    if (!track.poses.add(odometry.header.time, *odometry.T_odom_child)) {
       ++track.unordered;
       continue;
     }
@@ -72,7 +80,7 @@ MeasuredTrack readOdometry(const Bag& bag, std::size_t topic, const std::vector<
       ++track.uncertain;
     } else if (last) {
       const double begin = last->header.time, end = odometry.header.time;
-      const Pose2D step = planar(last->T_odom_child.inverse() * odometry.T_odom_child);
+      const Pose2D step = planar(last->T_odom_child->inverse() * *odometry.T_odom_child);
       track.steps.add(begin, end, {step, covariance * (end - begin) * (end - begin)});
     }
     last = std::move(odometry);
@@ -162,14 +170,16 @@ PoseWithCovariance motionBetween(const MeasuredTrack& odometry,
 
 }  // namespace
 
-std::string addRosbagMotions(const Bag& bag, std::size_t odometryTopic,
-                             std::optional<std::size_t> imuTopic, const FrameTree& frames,
-                             ScanFolder& folder) {
+void addRosbagMotions(const Bag& bag, std::size_t odometryTopic,
+                      std::optional<std::size_t> imuTopic, const FrameTree& frames,
+                      ScanFolder& folder) {
   const std::vector<double> times = timesOf(folder);
   std::string child;
   const MeasuredTrack odometry = readOdometry(bag, odometryTopic, times, child);
   noteTrack(bag.topics()[odometryTopic], odometry, folder.notes);
   requireOverlap(folder, odometry.poses, bag.path(), "odometry");
+  requireVehicleFrame(odometry.poses,
+                      bag.path().string() + ": " + bag.topics()[odometryTopic].name);
   std::optional<MeasuredTrack> imu;
   if (imuTopic) {
     imu = readImu(bag, *imuTopic, times, child, frames, folder.notes);
@@ -189,7 +199,6 @@ std::string addRosbagMotions(const Bag& bag, std::size_t odometryTopic,
     throw Error(bag.path().string() + ": no scan has both odometry and IMU at its time: odometry " +
                 odometry.poses.span() + ", IMU " + imu->poses.span() + "; leave --imu-topic out");
   keepScans(folder, keep, imu ? "at times without odometry or IMU" : "at times without odometry");
-  return child;
 }
 
 }  // namespace polemcl::io

@@ -29,10 +29,9 @@ namespace polemcl::io {
 /// \param odometry Topic, index in bag.topics(). \param imu The same; nothing: not used.
 /// \param frames Static transforms; if the pose of the IMU is not among them, its z axis is taken
 ///        for that of the robot, with a note.
-/// \return Frame of the robot: the child frame of the odometry.
-/// \throws Error as decodeOdometry() and decodeImu(), or when the odometry has two child frames, or
-///         no scan has odometry (or IMU, if it is used) at its time.
-std::string addRosbagMotions(const Bag& bag, std::size_t odometry, std::optional<std::size_t> imu,
-                             const FrameTree& frames, ScanFolder& folder);
+/// \throws Error as decodeOdometry(), decodeImu() and requireVehicleFrame(), or when the odometry
+///         has two child frames, or no scan has odometry (or IMU, if it is used) at its time.
+void addRosbagMotions(const Bag& bag, std::size_t odometry, std::optional<std::size_t> imu,
+                      const FrameTree& frames, ScanFolder& folder);
 
 }  // namespace polemcl::io

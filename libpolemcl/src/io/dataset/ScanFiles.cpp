@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 
 #include <polemcl/core/common/Types.h>
+#include "io/file/TextFile.h"
 
 namespace polemcl::io {
 
@@ -11,10 +13,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Whether the numbers in the names are in another order than their letters.
+bool isBefore(const fs::path& file, const fs::path& other) {
+  const std::string name = file.stem().string(), otherName = other.stem().string();
+  const auto number = parseNumber(name), otherNumber = parseNumber(otherName);
+  if (number && otherNumber) return *number < *otherNumber;
+  return strverscmp(name.c_str(), otherName.c_str()) < 0;
+}
+
 void requirePaddedNames(const std::vector<fs::path>& files) {
   for (std::size_t i = 1; i < files.size(); ++i) {
-    const auto before = fileNumber(files[i - 1]), number = fileNumber(files[i]);
-    if (before && number && *number < *before) {
+    if (isBefore(files[i], files[i - 1])) {
       throw Error(files[i].string() + ": sorts after " + files[i - 1].filename().string() +
                   " by name but before it by number; give all names the same number of digits");
     }

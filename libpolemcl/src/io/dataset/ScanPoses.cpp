@@ -1,6 +1,7 @@
 #include "io/dataset/ScanPoses.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "io/data/MotionSteps.h"
@@ -80,7 +81,29 @@ void requireOverlap(const ScanFolder& folder, const TrackSampler& track, const f
   if (track.found() > 0) return;
   throw Error(file.string() + ": no " + what + " at the time of any scan: " + what + " " +
               track.span() + ", scans " + span(folder) +
-              "; take the files of one and the same session");
+              "; take the files of one session, stamped by one clock");
+}
+
+void requireVehicleFrame(const TrackSampler& track, const std::string& where) {
+  double alongZ = 0, level = 0;
+  std::size_t down = 0;
+  const Eigen::Isometry3d* last = nullptr;
+  for (const auto& pose : track.poses()) {
+    if (!pose) continue;
+    if (pose->linear()(2, 2) < 0) ++down;
+    if (last) {
+      const Eigen::Vector3d step = (last->inverse() * *pose).translation();
+      alongZ += std::abs(step.z());
+      level += step.head<2>().norm();
+    }
+    last = &*pose;
+  }
+  constexpr double kShort = 2;  // m; less tells nothing
+  if (alongZ > kShort && alongZ > level)
+    throw Error(where + ": it moves " + fixed(alongZ, 1) + " m along z and " + fixed(level, 1) +
+                " m in x and y, as a camera does; a frame with x ahead and z up is expected");
+  if (2 * down > track.found())
+    throw Error(where + ": its z axis points down; a frame with x ahead and z up is expected");
 }
 
 void takePoses(ScanFolder& folder, const TrackSampler& track, const fs::path& file,
@@ -103,6 +126,7 @@ void takeTumMotions(ScanFolder& folder, const fs::path& file,
                     const Eigen::Isometry3d& T_pose_robot) {
   const TrackSampler track = sampled(folder, file, T_pose_robot);
   requireOverlap(folder, track, file, "odometry");
+  requireVehicleFrame(track, file.string());
   std::vector<bool> keep;
   const Eigen::Isometry3d* last = nullptr;
   for (std::size_t i = 0; i < folder.scans.size(); ++i) {

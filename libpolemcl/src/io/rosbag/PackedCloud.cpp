@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -84,30 +85,31 @@ const PackedField* findField(const PackedCloud& packed, const std::string& where
 const PackedField* findCoordinate(const PackedCloud& packed, const std::string& where,
                                   const std::string& name) {
   const PackedField* field = findField(packed, where, name);
-  if (!field || !is(*field, FieldType::float32))
-    throw Error(where + "no field " + name + " of float32 in the points");
+  if (!field || !(is(*field, FieldType::float32) || is(*field, FieldType::float64)))
+    throw Error(where + "no field " + name + " of float32 or float64 in the points");
   return field;
 }
 
 const PackedField* findTime(const PackedCloud& packed, const std::string& where) {
   for (const char* name : {"t", "time", "timestamp", "time_stamp", "offset_time"}) {
     const PackedField* field = findField(packed, where, name);
-    if (!field) continue;
-    if (!is(*field, FieldType::uint32) && !is(*field, FieldType::float32) &&
-        !is(*field, FieldType::float64))
-      throw Error(where + "the times of the points, " + field->name +
-                  ", are not of uint32, float32 or float64");
-    return field;
+    if (field && (is(*field, FieldType::uint32) || is(*field, FieldType::float32) ||
+                  is(*field, FieldType::float64)))
+      return field;
   }
   return nullptr;
 }
 
 /// Time since the stamp, s, from what the field holds.
 double timeSince(double stamp, double fieldTime, FieldType type) {
-  constexpr double kSince1970 = 1e8, kNanosecondsSince1970 = 1e17;
+  constexpr double kSince1970 = 1e8, kMostSeconds = 1e11, kLongTurn = 1;
   if (type == FieldType::uint32) return fieldTime * 1e-9;
-  if (type == FieldType::float32 || std::abs(fieldTime) < kSince1970) return fieldTime;
-  return (std::abs(fieldTime) < kNanosecondsSince1970 ? fieldTime : fieldTime * 1e-9) - stamp;
+  const bool isNearStamp = fieldTime > kLongTurn && std::abs(fieldTime - stamp) < kLongTurn;
+  if (type == FieldType::float32 || (std::abs(fieldTime) < kSince1970 && !isNearStamp))
+    return fieldTime;
+  double seconds = fieldTime;
+  while (std::abs(seconds) > kMostSeconds && std::isfinite(seconds)) seconds *= 1e-3;
+  return seconds - stamp;
 }
 
 }  // namespace
@@ -132,10 +134,11 @@ TimedCloud unpack(const PackedCloud& packed, const std::string& where, bool with
       };
       if (!result.cloud.add(of(x), of(y), of(z), intensity ? of(intensity) : 0) || !time) continue;
       const double offset = timeSince(packed.stamp, of(time), static_cast<FieldType>(time->type));
-      if (!std::isfinite(offset)) throw Error(where + "the time of a point is not finite");
       result.offsets.push_back(offset);
     }
   }
+  const auto isFinite = [](double offset) { return std::isfinite(offset); };
+  if (!std::all_of(result.offsets.begin(), result.offsets.end(), isFinite)) result.offsets.clear();
   return result;
 }
 

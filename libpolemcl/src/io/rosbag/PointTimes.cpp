@@ -7,6 +7,7 @@
 
 #include "core/common/Angles.h"
 #include "core/common/Statistics.h"
+#include "core/sensor/PointOrder.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {
@@ -21,6 +22,7 @@ constexpr double kLeastOnLine = 0.9;  ///< share of the points
 constexpr double kMostSpread = 15 * degree;  ///< of the azimuth at the stamp, from scan to scan
 constexpr double kRoundedStamp =
     0.005;  ///< s; a stamp so near to begin or end of the turn is there
+constexpr double kShortestTurn = 0.02, kLongestTurn = 1;  ///< s
 
 /// Points of a scan.
 struct TimedPoints {
@@ -122,19 +124,29 @@ std::optional<TimingEstimate::Fit> TimingEstimate::fit(const TimedCloud& scan) {
 }
 
 void TimingEstimate::add(const TimedCloud& scan) {
-  ++m_scans;
+  const bool isLater = complete();
+  if (!isLater) ++m_scans;
   const auto [first, last] = std::minmax_element(scan.offsets.begin(), scan.offsets.end());
   if (scan.offsets.empty() || *first == *last) {
-    ++m_untimed;
+    if (!isLater) ++m_untimed;
   } else if (!isFullTurn(scan.cloud)) {
-    ++m_partial;
+    if (!isLater) ++m_partial;
   } else if (const auto found = fit(scan)) {
-    m_fits.push_back(*found);
+    (isLater ? m_later : m_fits).push_back(*found);
+    m_inOrder = m_inOrder && pointOrder(scan.cloud.view());
   }
 }
 
 bool TimingEstimate::complete() const {
   return m_scans - m_untimed - m_partial >= kEnoughScans || m_scans >= kMostScans;
+}
+
+bool TimingEstimate::cutMoves() const {
+  const auto isElsewhere = [this](const Fit& fit) {
+    return std::abs(wrapAngle(fit.atStamp - m_fits.front().atStamp)) > kMostSpread;
+  };
+  return std::any_of(m_fits.begin(), m_fits.end(), isElsewhere) ||
+         std::any_of(m_later.begin(), m_later.end(), isElsewhere);
 }
 
 std::string TimingEstimate::problem() const {
@@ -144,13 +156,19 @@ std::string TimingEstimate::problem() const {
     return "the times of the points do not follow their azimuths";
   const Fit& reference = m_fits.front();
   for (const Fit& fit : m_fits) {
-    if (fit.rate * reference.rate < 0 || std::abs(fit.rate / reference.rate - 1) > 0.05 ||
-        std::abs(wrapAngle(fit.atStamp - reference.atStamp)) > kMostSpread)
-      return "the scans begin at different azimuths";
+    const double seconds = 2 * M_PI / std::abs(fit.rate);
+    if (seconds < kShortestTurn || seconds > kLongestTurn)
+      return "the times of the points tell turns of " + significant(seconds, 3) +
+             " s; uint32 in ns, float32 and float64 in s are expected";
+    if (fit.rate * reference.rate < 0 || std::abs(fit.rate / reference.rate - 1) > 0.05)
+      return "the scans turn in different ways";
     const double stamp = 0.5 - fit.middle * std::abs(fit.rate) / (2 * M_PI);
     if (stamp < -0.5 || stamp > 1.5)
       return "the times of the points are far from the stamps of the scans";
   }
+  if (cutMoves() && !m_inOrder)
+    return "the scans begin at different azimuths, and their points are not in the order of "
+           "measuring";
   return {};
 }
 
@@ -174,6 +192,7 @@ ScanTiming TimingEstimate::timing() const {
     timing.clock = (timing.stamp - stamp) * timing.seconds;
   const double atStamp = m_fits.front().atStamp + medianOf(azimuths);
   timing.cut = wrapAngle(atStamp + rate * (timing.clock - timing.stamp * timing.seconds));
+  timing.movingCut = cutMoves();
   return timing;
 }
 
@@ -186,8 +205,9 @@ std::string TimingEstimate::note() const {
   for (const auto& [value, text] : turnNames())
     if (value == found.turn) name = text;
   return "times of the points: turns of " + significant(found.seconds, 4) + " s, " + name +
-         ", cut at " + significant(found.cut / degree, 4) + " deg, stamped at " +
-         significant(found.stamp, 3) + " of the turn";
+         (found.movingCut ? ", each from its first point on"
+                          : ", cut at " + significant(found.cut / degree, 4) + " deg") +
+         ", stamped at " + significant(found.stamp, 3) + " of the turn";
 }
 
 std::optional<ScanTiming> timingOf(const std::vector<TimedCloud>& scans) {

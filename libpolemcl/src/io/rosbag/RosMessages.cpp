@@ -3,8 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "io/file/TextFile.h"
-
 namespace polemcl::io {
 namespace {
 
@@ -22,16 +20,13 @@ Eigen::Vector3d readVector(CdrReader& reader) {
 }
 
 /// x, y, z, then the quaternion x, y, z, w.
-Eigen::Isometry3d readPose(CdrReader& reader) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() = readVector(reader);
+std::optional<Eigen::Isometry3d> readPose(CdrReader& reader) {
+  Eigen::Vector3d position;
   Eigen::Quaterniond rotation;
-  for (int i = 0; i < 4; ++i) rotation.coeffs()[i] = reader.getFinite<double>();
-  const double length = rotation.norm();
-  if (std::abs(length - 1) > 0.01)
-    reader.fail("a quaternion has the length " + significant(length, 6) + "; 1 is allowed");
-  pose.linear() = rotation.normalized().toRotationMatrix();
-  return pose;
+  for (int i = 0; i < 3; ++i) position[i] = reader.get<double>();
+  for (int i = 0; i < 4; ++i) rotation.coeffs()[i] = reader.get<double>();
+  if (!position.allFinite() || !(std::abs(rotation.norm() - 1) < 0.01)) return std::nullopt;
+  return Eigen::Translation3d(position) * Eigen::Isometry3d(rotation.normalized());
 }
 
 /// Rows of a square matrix. The numbers are not checked: several drivers write what is not a

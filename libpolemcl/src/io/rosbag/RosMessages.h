@@ -4,6 +4,7 @@
 /// for clouds.
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,8 +28,8 @@ struct RosHeader {
 /// \brief nav_msgs/msg/Odometry.
 struct RosOdometry {
   RosHeader header;
-  std::string child;                                               ///< frame of the robot
-  Eigen::Isometry3d T_odom_child = Eigen::Isometry3d::Identity();  ///< m
+  std::string child;                              ///< frame of the robot
+  std::optional<Eigen::Isometry3d> T_odom_child;  ///< m
   /// Covariance of (vx, vy, vz, wx, wy, wz) in the child frame; m, rad, s. As stored, not checked.
   Eigen::Matrix<double, 6, 6> twistCovariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
@@ -44,7 +45,7 @@ struct RosImu {
 struct RosTransform {
   RosHeader header;  ///< its frame is the parent
   std::string child;
-  Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();  ///< m
+  std::optional<Eigen::Isometry3d> T_parent_child;  ///< m
 };
 
 /// \brief sensor_msgs/msg/NavSatFix without height. Its numbers are as stored, not checked: they
@@ -58,8 +59,10 @@ struct RosNavSatFix {
 };
 
 /// \brief Decode the message. \param where Prefix of error messages.
-/// \throws Error when it is cut short, a number is not finite, a quaternion is not of unit length
-///         (1 % off at most), or nanoseconds are a second or more.
+/// A pose is none if a number is not finite, or its quaternion not of unit length (1 % off at
+/// most). \throws Error when it is cut short, another number is not finite, or nanoseconds are a
+/// second or
+///         more.
 RosHeader readHeader(CdrReader& reader);
 RosOdometry decodeOdometry(std::string_view message, const std::string& where);
 RosImu decodeImu(std::string_view message, const std::string& where);

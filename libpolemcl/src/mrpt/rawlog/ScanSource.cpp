@@ -305,14 +305,16 @@ ScanSource::Scan ScanSource::release() {
   return scan;
 }
 
-/// Whether a scan of sensors has its odometry. The filter needs it from the first scan on.
-bool ScanSource::hasOdometry(const Scan& scan) {
-  if (scan.motion || m_odometry.at(scan.time)) return true;
+/// Whether a scan is left out: one of sensors without odometry, which the filter needs from the
+/// first scan on, and one of a rawlog in a long gap of its odometry.
+bool ScanSource::isLeftOut(const Scan& scan) {
+  const bool needed = isLive() || m_odometry.at(scan.time);
+  if (!needed || scan.motion || m_odometry.isNear(scan.time)) return false;
   if (++m_unknownMotions >= kMostWithoutOdometry && m_odometry.empty())
     throw Error(m_name + ": no odometry came with the first " + std::to_string(m_unknownMotions) +
                 " scans: the filter needs it; add a sensor that gives CObservationOdometry, such "
                 "as driver = CUdpOdometry");
-  return false;
+  return true;
 }
 
 /// Each LiDAR of the vehicle must be in a rawlog; known at its end, or when others have come often.
@@ -352,7 +354,7 @@ bool ScanSource::fill() {
 
 std::optional<ScanSource::Scan> ScanSource::next() {
   while (fill()) {
-    if (!m_entries->isLive() || hasOdometry(m_waiting.front())) return release();
+    if (!isLeftOut(m_waiting.front())) return release();
     m_waiting.pop_front();
   }
   if (m_error) std::rethrow_exception(m_error);

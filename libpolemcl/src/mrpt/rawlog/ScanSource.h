@@ -89,7 +89,7 @@ class ScanSource {
   void takeGroups();
   void requireLidars() const;
   bool fill();
-  bool hasOdometry(const Scan& scan);
+  bool isLeftOut(const Scan& scan);
   bool mustWait(const Scan& scan) const;
   Scan release();
   std::optional<Velocity> velocityAt(const Scan& scan) const;

@@ -14,7 +14,7 @@ namespace {
 /// Scans that wait for odometry; one more drops the oldest.
 constexpr std::size_t kMostWaiting = 5;
 /// Scans from which the turn of the LiDAR is learnt.
-constexpr std::size_t kTimingScans = 5;
+constexpr std::size_t kTimingScans = 10;
 constexpr int kWarningEvery = 5000;  // ms
 
 /// Parameters of the INI file have names that nobody can declare beforehand.

@@ -35,25 +35,27 @@ struct PackedCloud {
 /// \brief A cloud with the times of its points.
 struct TimedCloud {
   Cloud cloud;
-  /// Time from the stamp to each point of `cloud`, s; empty if the points have no times.
+  /// Time from the stamp to each point of `cloud`, s; empty if not all points have one.
   std::vector<double> offsets;
 };
 
 /// \brief Unpacks a cloud.
 ///
-/// Points need the fields x, y and z (float32); `intensity` may be of any type, and is 0 where it
-/// is missing. Times are in the first of the fields `t`, `time`, `timestamp`, `time_stamp` and
-/// `offset_time` that is there: uint32 in ns, float32 or float64 in s, since the stamp. A float64
-/// is a time since 1970 if it is above 1e8 s, in ns if it is above 1e17. Other fields are not read.
-/// Invalid points are dropped and counted as in readKittiBin().
-/// \param withTimes Whether to read the times. \param where Prefix of error messages.
-/// \throws Error when the sizes contradict each other, a field has another type or lies outside its
-///         point, or a time is not finite.
+/// Points need the fields x, y and z (float32 or float64); `intensity` may be of any type, and is 0
+/// where it is missing. Times are in the first of the fields `t`, `time`, `timestamp`, `time_stamp`
+/// and `offset_time` that is of one of these types: uint32 in ns, float32 or float64 in s, since
+/// the stamp. A float64 is a time of the clock of the stamp if it is above 1e8, or above 1 s and
+/// within 1 s of the stamp; above 1e11 it is in ms, us or ns. Other fields are not read. Invalid
+/// points are dropped and counted as in readKittiBin(). \param withTimes Whether to read the times.
+/// \param where Prefix of error messages. \throws Error when the sizes contradict each other, or a
+/// coordinate has another type or lies
+///         outside its point.
 POLEMCL_EXPORT TimedCloud unpack(const PackedCloud& packed, const std::string& where,
                                  bool withTimes);
 
 /// \brief How the LiDAR turns, from the times that the points of its scans have.
-/// \param scans The first of a drive; five full turns are enough.
+/// \param scans The first of a drive; five full turns are enough. More tell whether their begin
+///        moves.
 /// \return Nothing if they do not tell.
 POLEMCL_EXPORT std::optional<ScanTiming> timingOf(const std::vector<TimedCloud>& scans);
 
