@@ -96,7 +96,7 @@ void addUpdate(py::module_& module) {
       .def_property_readonly(
           "covariance", [](const PoseWithCovariance& pose) { return toArray(pose.covariance); },
           "(3, 3), of x, y, yaw.");
-  py::class_<Health>(module, "Health", "Whether the pose can be trusted: share/doc/health.md.")
+  py::class_<Health>(module, "Health", "What speaks against the pose: share/doc/health.md.")
       .def_property_readonly(
           "state", [](const Health& health) { return name(health.state); },
           "'ok', 'degraded' or 'lost'.")

@@ -25,7 +25,7 @@ height_m = 1.0      # metres above the ground
 - `--set SECTION.KEY=VALUE` replaces a value of the file.
 - `--config` takes a path or the name of an installed file: `nclt.ini` and `config/nclt.ini` work in any folder.
 - `--print-config` prints the settings in effect, without those of the tier *expert*; with `--all` all of them.
-- The defaults were chosen by measuring, between LiDARs and drives: another value may be better for yours. Those of `config/paper/` are the paper's.
+- The defaults were chosen by measuring, between LiDARs and drives: another value may be better for yours. Those of `config/paper/` are those of its authors' program ([paper](paper.md)).
 - Angles are in degrees, and rounded on these pages.
 - Unknown sections and keys are refused, and numbers outside the allowed values. Sections of the simulator and of the view may stand in the file of any program.
 

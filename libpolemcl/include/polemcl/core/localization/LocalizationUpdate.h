@@ -1,6 +1,6 @@
 #pragma once
 /// \file LocalizationUpdate.h
-/// \brief What a scan brings: the pose, and how far it can be trusted.
+/// \brief What a scan brings: the pose, and what speaks against it.
 
 #include <Eigen/Core>
 #include <cstddef>
