@@ -117,6 +117,21 @@ TEST(PoleExtractor, PolesBeyondTheRangeAreNotLookedFor) {
   EXPECT_EQ(extract(castYard(sensor), sensor, options).size(), 3u);
 }
 
+// Of what is farther than the LiDAR's own greatest range nothing is known.
+TEST(PoleExtractor, TheSensorsGreatestRangeEndsWhatIsVisible) {
+  SensorOptions sensor = sensorOptions("hdl32e");
+  sensor.maxRange = 12;
+  for (const auto method : {ExtractionMethod::scanLine, ExtractionMethod::rangeImage}) {
+    ExtractionOptions options;
+    options.method = method;
+    PoleExtractor extractor(sensor, options);
+    const PointList points = castYard(sensor);
+    for (const PoleDetection& pole : extractor.extract(points.view()))
+      EXPECT_LE(std::hypot(pole.x, pole.y), 12.5);
+    for (const float range : extractor.visibilityRange()) EXPECT_LE(range, 12);
+  }
+}
+
 TEST(PoleExtractor, DistancesAreCorrectedAsTheSettingsSay) {
   SensorOptions sensor = sensorOptions("os1_64");
   const PointList points = castYard(sensor);

@@ -69,6 +69,21 @@ TEST(GroundPlane, ACeilingIsNoGround) {
   EXPECT_NEAR(ground->heightOf({0, 0, 0}), 1.2, 0.03);
 }
 
+// Parked cars hide most of the floor of a garage; its ceiling is all in view.
+TEST(GroundPlane, ACeilingOverParkedCarsIsNoGround) {
+  PointList points;
+  sim::Random random(7);
+  for (int i = 0; i < 20000; ++i) {
+    const double x = random.uniform(-25, 25), y = random.uniform(-25, 25);
+    const bool isCar = std::fmod(x + 50, 5) < 3.2;
+    points.add(x, y, isCar ? random.uniform(-1.5, 0) : -1.8 + 0.01 * random.normal());
+    points.add(x, y, 0.7 + 0.01 * random.normal());
+  }
+  const auto ground = findGroundPlane(points.view());
+  ASSERT_TRUE(ground);
+  EXPECT_FALSE(ground->above);
+}
+
 // NCLT: the origin of the clouds lies almost on the ground, the sensor a metre over it.
 TEST(GroundPlane, TakesHeightsFromTheSensor) {
   const PointList points = field(0.05);

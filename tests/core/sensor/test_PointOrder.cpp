@@ -47,11 +47,21 @@ TEST(PointOrder, LasersOfOneFiringMayLookToDifferentSides) {
   EXPECT_NEAR(order->begin, 16 * M_PI / 180, 1e-6);
 }
 
-TEST(PointOrder, RingsHalvesAndMixedPointsTellNothing) {
+TEST(PointOrder, WhereReturnsAreMissingTheRestTells) {
+  std::vector<double> azimuths = turn(100, -0.5, 150), rest = turn(-150, -0.5, 100);
+  azimuths.insert(azimuths.end(), rest.begin(), rest.end());
+  const auto order = orderOf(azimuths);
+  ASSERT_TRUE(order);
+  EXPECT_EQ(order->turn, Turn::clockwise);
+  EXPECT_NEAR(order->begin, 100 * M_PI / 180, 1e-6);
+  EXPECT_NEAR(order->arc, 249 * M_PI / 180, 1e-3);
+}
+
+TEST(PointOrder, RingsShortPiecesAndMixedPointsTellNothing) {
   std::vector<double> rings = turn(0, 0.5), again = rings, mixed;
   rings.insert(rings.end(), again.begin(), again.end());
   EXPECT_FALSE(orderOf(rings));
-  EXPECT_FALSE(orderOf(turn(0, 0.5, 180)));
+  EXPECT_FALSE(orderOf(turn(0, 0.5, 80)));
   for (int i = 0; i < 1000; ++i) mixed.push_back(std::fmod(i * 222.49, 360));
   EXPECT_FALSE(orderOf(mixed));
   EXPECT_FALSE(orderOf(turn(0, 0.5), 0.5f)) << "nearer than 1 m";

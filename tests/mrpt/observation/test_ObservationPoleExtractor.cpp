@@ -63,6 +63,40 @@ TEST(ObservationPoleExtractor, AMovingCutIsAtTheFirstPoint) {
   EXPECT_THROW(process([](float, float, float z) { return z; }), Error);
 }
 
+// Packets that are lost, or a first turn that is cut short, do not end a drive.
+TEST(ObservationPoleExtractor, AMovingCutOfAScanWithFewPointsCorrectsNothing) {
+  auto options = hdl32(1.5);
+  options.sensor.timing = {Turn::clockwise, 0.1, M_PI, 0, 0, true};
+  TestCloud cloud = plainCloud(options);
+  for (auto* values : {&cloud.x, &cloud.y, &cloud.z}) values->resize(100);
+  ObservationPoleExtractor extraction(options);
+  for (const PoleDetection& pole : extraction.process(*observationOf(cloud, CPose3D()))->poles)
+    EXPECT_EQ(pole.timeOffset, 0);
+}
+
+TEST(ObservationPoleExtractor, AContradictionIsNotForgotten) {
+  auto options = hdl32(1.5);
+  const TestCloud cloud = plainCloud(options);
+  options.sensor.model = "hdl64e";
+  ObservationPoleExtractor extraction(options);
+  for (int i = 0; i < 5; ++i)
+    EXPECT_THROW(extraction.process(*observationOf(cloud, CPose3D())), Error) << i;
+}
+
+// The LiDAR turns the other way, seen in the levelled frame of the poles.
+TEST(ObservationPoleExtractor, OnItsHeadItTurnsTheOtherWay) {
+  auto options = hdl32(1.5);
+  options.sensor.upsideDown = true;
+  options.sensor.timing = {Turn::clockwise, 0.1, M_PI, 0.5};
+  const CPose3D onItsHead(0, 0, 1.5, 0, 0, M_PI);
+  const TestCloud cloud = castScan(options.sensor, isometry(CPose3D(0, 0, 1.5)), testPoles());
+  ObservationPoleExtractor extraction(options);
+  const auto scan = extraction.process(*observationOf(
+      cloud, onItsHead, isometry(onItsHead).inverse() * isometry(CPose3D(0, 0, 1.5))));
+  EXPECT_GE(scan->poles.size(), 6u);
+  for (const PoleDetection& pole : scan->poles) EXPECT_EQ(pole.turnRate, 20 * M_PI);
+}
+
 // Clockwise from the back, stamped at the front: what is at the left was measured before.
 TEST(ObservationPoleExtractor, PolesHaveTheTimesOfTheirAzimuths) {
   auto options = hdl32(1.5);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -29,6 +30,7 @@ mrpt::obs::VelodyneCalibration hdl64() {
     const double elevation = (2 - 0.42 * i) * M_PI / 180;
     laser.sinVertCorrection = std::sin(elevation);
     laser.cosVertCorrection = std::cos(elevation);
+    laser.azimuthCorrection = i % 2 ? 9.87 - 0.1 * i : -8.5;
     laser.distanceCorrection = 0.5 + 0.01 * i;
     laser.verticalOffsetCorrection = 0.2 - 0.001 * i;
     laser.horizontalOffsetCorrection = i % 2 ? 0.026 : -0.026;
@@ -95,7 +97,7 @@ TEST(VelodynePoints, TheirPacketsTellWhenTheyAreMeasured) {
 TEST(VelodynePoints, AreThoseOfMrptWhereItReadsThem) {
   constexpr double twoUnits = 2 * 2 * M_PI / 36000;
   std::mt19937 random(3);
-  for (const char* model : {"VLP16", "HDL32", "HDL64"})
+  for (const char* model : {"VLP16", "HDL32"})
     for (const bool isDual : {false, true}) {
       Scan scan = scanOf(model, {randomPacket(random, 16, isDual), randomPacket(random, 16, isDual),
                                  randomPacket(random, 16, isDual)});
@@ -116,6 +118,38 @@ TEST(VelodynePoints, AreThoseOfMrptWhereItReadsThem) {
         ASSERT_EQ(points.laser[i], expected.laser_id[i]);
       }
     }
+}
+
+/// The beam begins beside and above the axis: along it by the range, across it by the offsets.
+TEST(VelodynePoints, OfAnHdl64eAreCorrectedAsItsManualSays) {
+  std::mt19937 random(3);
+  const std::string packet = randomPacket(random, 32, false);
+  const Scan scan = scanOf("HDL64", {packet});
+  const VelodynePoints points = read(scan);
+  std::size_t next = 0;
+  for (const auto& block : scan.scan_packets[0].blocks)
+    for (int k = 0; k < 32; ++k) {
+      const int i = block.header() == Scan::LOWER_BANK ? k + 32 : k;
+      const double range = block.laser_returns[k].distance() * 0.002 + 0.5 + 0.01 * i;
+      if (block.laser_returns[k].distance() == 0 || range < scan.minRange || range > scan.maxRange)
+        continue;
+      const double e = (2 - 0.42 * i) * M_PI / 180;
+      const double a = block.rotation() * M_PI / 18000 -
+                       (i % 2 ? 9.87 - 0.1 * i : -8.5) * M_PI / 180;  // clockwise
+      const Eigen::Vector3d along(std::cos(e) * std::cos(a), -std::cos(e) * std::sin(a),
+                                  std::sin(e)),
+          aside(std::sin(a), std::cos(a), 0), up = along.cross(aside);
+      const Eigen::Vector3d expected =
+          range * along + (i % 2 ? 0.026 : -0.026) * aside + (0.2 - 0.001 * i) * up;
+      ASSERT_LT(next, points.x.size());
+      EXPECT_EQ(points.laser[next], i);
+      EXPECT_NEAR(points.x[next], expected.x(), 1e-4);
+      EXPECT_NEAR(points.y[next], expected.y(), 1e-4);
+      EXPECT_NEAR(points.z[next], expected.z(), 1e-4);
+      ++next;
+    }
+  EXPECT_EQ(next, points.x.size());
+  EXPECT_GT(next, 200u);
 }
 
 /// The range and the direction that the simulation gave each return.

@@ -16,6 +16,7 @@ constexpr double kMostLevel = 0.906;            // cosine of 25°
 constexpr double kLeastShare = 0.25;
 constexpr double kLeastHeight = 0.1;  // m, of the sensor over the ground
 constexpr double kHeadShare = 0.35;   // least share of ground that is overhead
+constexpr double kMostBelow = 0.2;    // then, what lies below is no plane; in garages 0.28 and more
 constexpr int kTrials = 400;
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -155,8 +156,8 @@ double GroundPlane::pitch() const {
 std::optional<GroundPlane> findGroundPlane(const PointsView& points,
                                            const Eigen::Vector3d& sensor) {
   const GroundPlane below = groundOn(points, sensor, 1), above = groundOn(points, sensor, -1);
-  // A ceiling is a plane, too, but there is a floor under it.
-  const bool onItsHead = above.share >= kHeadShare && above.share > 1.5 * below.share;
+  // A ceiling is a plane, too, but there is a floor under it, though cars may hide much of it.
+  const bool onItsHead = above.share >= kHeadShare && below.share < kMostBelow;
   const GroundPlane& ground = onItsHead ? above : below;
   if (ground.share < kLeastShare) return std::nullopt;
   return ground;

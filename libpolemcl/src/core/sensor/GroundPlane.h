@@ -26,7 +26,7 @@ struct GroundPlane {
 };
 
 /// \brief Finds the ground within 25 m: the lowest returns around the sensor, or the highest ones
-/// where these, not the lowest, form a plane that nothing lies beyond.
+/// where these, not the lowest, form a plane.
 /// \param points One turn; NaN and zeros are passed over. Their order does not matter.
 /// \param sensor The optical centre in the frame of the cloud, m; it is at least 0.1 m over the
 /// ground.

@@ -8,7 +8,7 @@ namespace {
 constexpr double s_nearest = 1;                    // m; nearer ones may be the vehicle
 constexpr double s_longestStep = 20 * M_PI / 180;  // lasers of one firing look to different sides
 constexpr double s_mostJumps = 0.1;                // share of the steps that are longer
-constexpr double s_least = 300 * M_PI / 180, s_most = 420 * M_PI / 180;  // of a turn
+constexpr double s_least = 90 * M_PI / 180, s_most = 420 * M_PI / 180;  // of a turn
 
 }  // namespace
 
@@ -29,8 +29,9 @@ std::optional<PointOrder> pointOrder(const PointsView& points) {
     else
       ++jumps;
   }
-  const bool oneTurn = std::abs(turned) > s_least && std::abs(turned) < s_most;
-  if (!oneTurn || static_cast<double>(jumps) > s_mostJumps * static_cast<double>(steps))
+  order.arc = std::abs(turned);
+  if (order.arc < s_least || order.arc > s_most ||
+      static_cast<double>(jumps) > s_mostJumps * static_cast<double>(steps))
     return std::nullopt;
   order.turn = turned > 0 ? Turn::counterclockwise : Turn::clockwise;
   return order;

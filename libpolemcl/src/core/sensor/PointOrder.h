@@ -13,10 +13,12 @@ namespace polemcl {
 struct PointOrder {
   Turn turn = Turn::clockwise;  ///< or counterclockwise
   double begin = 0;             ///< azimuth of the first point, rad, frame of the points
+  double arc = 0;               ///< of the turn that has points, rad
 };
 
-/// \brief None unless the azimuths of successive points make one turn: rings one after the other
-/// make as many as there are, mixed points none.
+/// \brief None unless the azimuths of successive points make one turn, or a part of it where
+/// returns are missing: rings one after the other make as many turns as there are, mixed points
+/// none.
 std::optional<PointOrder> pointOrder(const PointsView& points);
 
 }  // namespace polemcl

@@ -21,7 +21,7 @@ constexpr double kOnLine =
 constexpr double kLeastOnLine = 0.9;  ///< share of the points
 constexpr double kMostSpread = 15 * degree;  ///< of the azimuth at the stamp, from scan to scan
 constexpr double kRoundedStamp =
-    0.005;  ///< s; a stamp so near to begin or end of the turn is there
+    0.005;  ///< turns; a stamp so near to begin or end of the turn is there
 constexpr double kShortestTurn = 0.02, kLongestTurn = 1;  ///< s
 
 /// Points of a scan.

@@ -160,11 +160,14 @@ ScanTiming ObservationPoleExtractor::Impl::timingOf(const PointsView& cloud) con
   }
   if (!timing.known() || !timing.movingCut) return timing;
   const auto order = pointOrder(cloud);
-  if (!order)
+  if (!order && cloud.size < SensorConfigCheck::kFewestPoints)
+    timing.turn = Turn::compensated;  // nothing to correct
+  else if (!order)
     throw Error(
         "the points of the cloud are not in the order of measuring, so moving_cut = true finds no "
         "begin of the scan; cut_deg names a fixed one");
-  timing.cut = order->begin;
+  else
+    timing.cut = order->begin;
   return timing;
 }
 
@@ -173,11 +176,12 @@ void ObservationPoleExtractor::Impl::setTimeOffsets(const LidarFrame& frames,
                                                     const ScanTiming& timing,
                                                     std::vector<PoleDetection>& poles) const {
   if (!timing.known() && timing.clock == 0) return;
+  const bool onItsHead = frames.R_lidar_cloud(2, 2) < 0;
   for (PoleDetection& pole : poles) {
     const Eigen::Vector3d cloud =
         frames.R_lidar_cloud.transpose() * Eigen::Vector3d(pole.x, pole.y, 0);
     pole.timeOffset = timing.offset(std::atan2(cloud.y(), cloud.x()));
-    pole.turnRate = timing.turnRate();
+    pole.turnRate = onItsHead ? -timing.turnRate() : timing.turnRate();
   }
 }
 
@@ -188,12 +192,12 @@ void ObservationPoleExtractor::Impl::compare(const mrpt::obs::CObservation& obse
   if (!sensor.checkBeams || checksLeft <= 0 || image ||
       cloud.size < SensorConfigCheck::kFewestPoints)
     return;
-  --checksLeft;
   const std::string ofPackets = packetContradiction(observation);
   if (!ofPackets.empty()) throw Error(ofPackets + "; check_beams = false uses them anyway");
   const std::string contradiction =
       check.contradiction(moved.toLidar(cloud, lidarFrame(sensorPose, sensor)));
   if (!contradiction.empty()) throw Error(contradiction);
+  --checksLeft;
 }
 
 ObservationPoleExtractor::ObservationPoleExtractor(const ObservationPoleExtractorOptions& options)

@@ -83,20 +83,25 @@ class Reader {
   }
 
  private:
-  /// MRPT's x is y of the manual, and its y is -x.
+  /// As the manual of the HDL-64E. MRPT's x is y of the manual, and its y is -x; MRPT 2.5.8 passes
+  /// over the correction of the azimuth, deg, and takes the offsets for level ones.
   void add(int laser, int azimuth, int range) {
     const auto& calibration = m_scan.calibration.laser_corrections[static_cast<std::size_t>(laser)];
+    const int corrected =
+        azimuth - static_cast<int>(std::lrint(100 * calibration.azimuthCorrection));
     const double distance =
         range * double{Scan::DISTANCE_RESOLUTION} + calibration.distanceCorrection;
     if (distance < m_scan.minRange || distance > m_scan.maxRange) return;
     const double offset = calibration.verticalOffsetCorrection,
                  aside = calibration.horizontalOffsetCorrection;
     const double level =
-        distance * calibration.cosVertCorrection + offset * calibration.sinVertCorrection;
-    const auto [cosine, sine] = directions()[static_cast<std::size_t>(azimuth)];
+        distance * calibration.cosVertCorrection - offset * calibration.sinVertCorrection;
+    const auto [cosine, sine] =
+        directions()[static_cast<std::size_t>((corrected + kFullTurn) % kFullTurn)];
     m_points.x.push_back(static_cast<float>(level * cosine + aside * sine));
     m_points.y.push_back(static_cast<float>(aside * cosine - level * sine));
-    m_points.z.push_back(static_cast<float>(distance * calibration.sinVertCorrection + offset));
+    m_points.z.push_back(static_cast<float>(distance * calibration.sinVertCorrection +
+                                            offset * calibration.cosVertCorrection));
     m_points.laser.push_back(laser);
   }
 

@@ -49,10 +49,11 @@ void requireBeams(const mrpt::obs::CObservation& scan) {
 }
 
 std::vector<PointOrder> ordersOf(const std::vector<PointsView>& scans) {
+  constexpr double kNearlyAll = 300 * degree;
   std::vector<PointOrder> orders;
   for (const PointsView& scan : scans) {
     const auto order = pointOrder(scan);
-    if (!order) return {};
+    if (!order || order->arc < kNearlyAll) return {};
     orders.push_back(*order);
   }
   return orders;

@@ -14,8 +14,9 @@ namespace {
 /// Scans that wait for odometry; one more drops the oldest.
 constexpr std::size_t kMostWaiting = 5;
 /// Scans from which the turn of the LiDAR is learnt.
-constexpr std::size_t kTimingScans = 10;
-constexpr int kWarningEvery = 5000;  // ms
+constexpr std::size_t kTimingScans = 5;                   // the first
+constexpr std::size_t kAllTimingScans = 20, kApart = 20;  // later ones, which are so far apart
+constexpr int kWarningEvery = 5000;                       // ms
 
 /// Parameters of the INI file have names that nobody can declare beforehand.
 rclcpp::NodeOptions withAllParameters(rclcpp::NodeOptions options) {
@@ -174,8 +175,8 @@ void LocalizerNode::release() {
   m_listener.reset();
   m_transforms.reset();
   m_waiting.clear();
-  m_firstScans.clear();
-  m_timingIsKnown = false;
+  m_timedScans.clear();
+  m_scans = 0;
   m_localizer.reset();
 }
 
@@ -248,20 +249,22 @@ std::optional<Eigen::Isometry3d> LocalizerNode::poseOnRobot(
 
 void LocalizerNode::localize(const Cloud& cloud, const Eigen::Isometry3d& T_robot_lidar) {
   const std::string where = std::string(m_clouds->get_topic_name()) + ": ";
-  polemcl::io::TimedCloud scan = polemcl::io::unpack(packedOf(cloud), where, !m_timingIsKnown);
+  // Later scans tell whether the azimuth at which they begin moves.
+  const bool tellsTiming = m_timedScans.size() < kTimingScans ||
+                           (m_timedScans.size() < kAllTimingScans && m_scans % kApart == 0);
+  polemcl::io::TimedCloud scan = polemcl::io::unpack(packedOf(cloud), where, tellsTiming);
   const auto update =
       m_localizer->step(secondsOf(cloud.header.stamp), scan.cloud.view(), T_robot_lidar);
   publish(update, cloud.header);
-  if (!m_timingIsKnown) learnTiming(std::move(scan));
+  ++m_scans;
+  if (tellsTiming) learnTiming(std::move(scan));
 }
 
 void LocalizerNode::learnTiming(polemcl::io::TimedCloud cloud) {
-  m_firstScans.push_back(std::move(cloud));
-  m_timingIsKnown = m_firstScans.size() == kTimingScans;
-  if (!m_timingIsKnown) return;
-  if (const auto timing = polemcl::io::timingOf(m_firstScans))
+  m_timedScans.push_back(std::move(cloud));
+  if (m_timedScans.size() < kTimingScans) return;
+  if (const auto timing = polemcl::io::timingOf(m_timedScans))
     m_localizer->setRecordedTiming(*timing);
-  m_firstScans.clear();
 }
 
 void LocalizerNode::publish(const polemcl::LocalizationUpdate& update,

@@ -66,8 +66,8 @@ class LocalizerNode : public rclcpp_lifecycle::LifecycleNode {
   std::string m_mapFrame, m_odometryFrame, m_robotFrame;
   double m_tolerance = 0;  ///< for which the transform is valid after its scan, s
   std::deque<Cloud::ConstSharedPtr> m_waiting;        ///< for odometry of their time
-  std::vector<polemcl::io::TimedCloud> m_firstScans;  ///< until they told how the LiDAR turns
-  bool m_timingIsKnown = false;
+  std::vector<polemcl::io::TimedCloud> m_timedScans;  ///< they tell how the LiDAR turns
+  std::size_t m_scans = 0;                            ///< so far
 
   std::unique_ptr<tf2_ros::Buffer> m_transforms;
   std::unique_ptr<tf2_ros::TransformListener> m_listener;

@@ -41,7 +41,7 @@ struct POLEMCL_EXPORT ObservationPoleExtractorOptions {
 ///
 /// Sources of the points by class:
 /// - CObservationPointCloud: the cloud as it is; external storage is loaded and unloaded.
-/// - CObservationVelodyneScan: its cloud; without one, a cloud generated on a copy.
+/// - CObservationVelodyneScan: its cloud; without one, that of its packets.
 /// - CObservation3DRangeScan: its depth image, with the camera's intrinsics and lens distortion
 ///   (plumb_bob; what lies outside the undistorted image of the same size is not used). The method
 ///   scan_line treats pixel rows as rings for any `model`, in a level frame at the optical centre

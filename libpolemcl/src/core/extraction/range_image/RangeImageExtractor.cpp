@@ -24,9 +24,18 @@ RangeImageOptions adaptedTo(const SensorModel& beams, RangeImageOptions options)
   return options;
 }
 
+namespace {
+
+RangeImageOptions within(double maxRange, RangeImageOptions options) {
+  options.maxRange = std::min(maxRange, options.maxRange);
+  return options;
+}
+
+}  // namespace
+
 RangeImageExtractor::RangeImageExtractor(const SensorModel& beams, const SensorOptions& sensor,
                                          const RangeImageOptions& options)
-    : m_options(adaptedTo(beams, options)),
+    : m_options(adaptedTo(beams, within(sensor.maxRange, options))),
       m_minRange(sensor.minRange),
       m_height(sensor.height - (options.projectFrom == "cloud" ? sensor.originZ : 0)),
       m_heightOffset(options.heightsAboveGround ? m_height : 0),

@@ -307,7 +307,8 @@ AxisTilt tiltOf(const std::vector<ScanLineSegment>& segments,
 /// Moves the fit along the pole to the height of the sensor, as far as the segments reach: there a
 /// roll or pitch of the sensor does not move it.
 void moveToSensorHeight(const AxisTilt& tilt, PoleFit& fit) {
-  const double reached = std::clamp(0.0, tilt.low, tilt.high);
+  const auto [low, high] = std::minmax(tilt.low, tilt.high);
+  const double reached = std::clamp(0.0, low, high);
   const double step = reached - tilt.height;
   fit.x += static_cast<float>(tilt.x * step);
   fit.y += static_cast<float>(tilt.y * step);

@@ -34,7 +34,7 @@ ScanLineExtractor::ScanLineExtractor(SensorModel model, const SensorOptions& sen
       m_lines(m_sensor),
       m_finder(m_sensor, options),
       m_clustering(m_sensor, options),
-      m_visibilityFinder(m_sensor, sensor.height, options.maxRange) {}
+      m_visibilityFinder(m_sensor, sensor.height, std::min(sensor.maxRange, options.maxRange)) {}
 
 void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f& upright,
                                 std::vector<PoleDetection>& poles, ExtractionReport& report) {
