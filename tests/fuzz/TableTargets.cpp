@@ -3,7 +3,6 @@
 #include "io/data/GnssCsv.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/LabelledScans.h"
-#include "io/file/CsvRows.h"
 #include "io/file/CsvTable.h"
 #include "io/file/Date.h"
 #include "io/map/Datum.h"
@@ -29,7 +28,7 @@ void readTable(std::string_view bytes) {
 }
 
 void readRows(std::string_view bytes) {
-  io::CsvRows rows(fileOf("a.csv", bytes), 3, "utime, x, y");
+  io::NumberRowReader rows(fileOf("a.csv", bytes), 3, "utime, x, y", io::Separator::commas);
   for (std::vector<double> row; rows.next(row);) io::allFinite(row);
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -27,6 +28,14 @@ namespace fs = std::filesystem;
 inline std::string read(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+inline void writeGzip(const fs::path& file, const std::string& text) {
+  const gzFile stream = gzopen(file.c_str(), "wb");
+  ASSERT_NE(stream, nullptr);
+  ASSERT_EQ(gzwrite(stream, text.data(), static_cast<unsigned>(text.size())),
+            static_cast<int>(text.size()));
+  ASSERT_EQ(gzclose(stream), Z_OK);
 }
 
 using tests::messageOf;

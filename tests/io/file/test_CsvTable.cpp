@@ -31,6 +31,15 @@ TEST_F(CsvTableTest, ReadsColumnsByName) {
   EXPECT_EQ(table.at(1), path("t.csv").string() + ":6: ");
 }
 
+TEST_F(CsvTableTest, FieldsBetweenTabsMayBeEmptyAtTheEndsOfALine) {
+  const CsvTable table(write("t.csv", "name\tx\tnote\na\t1\t\n\t\t\n\t2\tb \n"), '\t');
+  ASSERT_EQ(table.rows(), 2u);
+  EXPECT_EQ(table.text(0, 2), "");
+  EXPECT_EQ(table.text(1, 0), "");
+  EXPECT_EQ(table.number(1, 1), 2);
+  EXPECT_EQ(table.text(1, 2), "b");
+}
+
 TEST_F(CsvTableTest, AHeaderAloneIsATableWithoutRows) {
   EXPECT_EQ(CsvTable(write("t.csv", "x,y\n")).rows(), 0u);
 }

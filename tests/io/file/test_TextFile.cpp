@@ -1,5 +1,3 @@
-#include <zlib.h>
-
 #include <cmath>
 #include <limits>
 
@@ -12,17 +10,6 @@ using namespace polemcl::io;
 using namespace polemcl::io::test;
 
 using TextFileTest = FolderTest;
-
-namespace {
-
-void writeGzip(const fs::path& file, const std::string& text) {
-  gzFile stream = gzopen(file.c_str(), "wb");
-  ASSERT_NE(stream, nullptr);
-  ASSERT_EQ(gzwrite(stream, text.data(), text.size()), static_cast<int>(text.size()));
-  ASSERT_EQ(gzclose(stream), Z_OK);
-}
-
-}  // namespace
 
 TEST_F(TextFileTest, LinesOfAnyEnd) {
   const auto lines = readLines(write("f",
@@ -69,6 +56,15 @@ TEST_F(TextFileTest, RefusesTextThatNoTableHolds) {
   EXPECT_REFUSED(readLines(path("bomb.gz")), path("bomb.gz").string(), "more than 18 MB");
 }
 
+// A long table is no bomb: 130 MB of one line.
+TEST_F(TextFileTest, PlainTextMayHaveAnyLength) {
+  fs::resize_file(write("long", "1\n"), 130 << 20);
+  LineReader reader(path("long"));
+  std::string line;
+  EXPECT_TRUE(reader.next(line) && reader.next(line));
+  EXPECT_EQ(line.size(), (std::size_t{130} << 20) - 2);
+}
+
 TEST_F(TextFileTest, RefusesDamagedGzip) {
   writeGzip(path("f.gz"), std::string(1000, 'a') + std::string(1000, 'b'));
   std::string bytes = read(path("f.gz"));
@@ -103,8 +99,58 @@ TEST_F(TextFileTest, RefusesWhatIsNoNumber) {
   for (const char* word :
        {"x", "1,5", "0x10", "1.5m", "+-1", "--1", "nan", "inf", "-Infinity", "1e999"}) {
     const fs::path file = write("f", std::string("1\n") + word + "\n");
-    EXPECT_REFUSED(readNumberRows(file, 1, "a"), file.string() + ":2: ", word);
+    EXPECT_REFUSED(readNumberRows(file, 1, "a b"), file.string() + ":2: ", word,
+                   "is not a finite number; expected: a b");
   }
+}
+
+TEST_F(TextFileTest, RowsWithCommas) {
+  const std::string text = "\xEF\xBB\xBF# t,x,y\n1326652795280148,-2.5, 3e2\r\n\n4,NaN,nan\n5,6,7";
+  writeGzip(path("a.csv.gz"), text);
+  for (const fs::path& file : {write("a.csv", text), path("a.csv.gz")}) {
+    NumberRowReader rows(file, 3, "", Separator::commas);
+    std::vector<double> row;
+    ASSERT_TRUE(rows.next(row));
+    EXPECT_EQ(row, (std::vector<double>{1326652795280148, -2.5, 300}));
+    EXPECT_EQ(rows.at(), file.string() + ":2: ");
+    ASSERT_TRUE(rows.next(row));
+    EXPECT_TRUE(row[0] == 4 && std::isnan(row[1]) && std::isnan(row[2]));
+    EXPECT_FALSE(allFinite(row));
+    ASSERT_TRUE(rows.next(row));
+    EXPECT_EQ(row, (std::vector<double>{5, 6, 7}));
+    EXPECT_FALSE(rows.next(row));
+  }
+}
+
+TEST_F(TextFileTest, RefusesRowsWithCommasThatAreShortOrNoNumbers) {
+  const auto refusal = [&](const std::string& content) {
+    NumberRowReader rows(write("a.csv", content), 3, "time, x, y", Separator::commas);
+    return messageOf([&] {
+      for (std::vector<double> row; rows.next(row);) {
+      }
+    });
+  };
+  expectIn(refusal("1,2,3\n1,2\n"), "a.csv:2: ", "2 numbers, 3 expected", "time, x, y");
+  expectIn(refusal("1,2,3,4\n"), "a.csv:1: ", "4 numbers, 3 expected");
+  expectIn(refusal("1,2,\n"), "a.csv:1: ", "'' is not a number");
+  expectIn(refusal("time,x,y\n"), "a.csv:1: ", "'time' is not a number; expected: time, x, y");
+}
+
+TEST_F(TextFileTest, TellsHowMuchOfTheRowsIsRead) {
+  std::string text;
+  for (int i = 0; i < 300000; ++i) text += "1,2,3.5\n";  // 2.4 MB
+  std::vector<std::size_t> done;
+  NumberRowReader rows(write("a.csv", text), 3, "", Separator::commas,
+                       [&](std::size_t now, std::size_t total) {
+                         EXPECT_EQ(total, 2u);
+                         done.push_back(now);
+                       });
+  for (std::vector<double> row; rows.next(row);) {
+  }
+  ASSERT_EQ(done.size(), 30u);
+  EXPECT_EQ(done.front(), 0u);
+  EXPECT_EQ(done[14], 1u);  // 150,000 rows are 1.2 MB
+  EXPECT_EQ(done.back(), 2u);
 }
 
 TEST_F(TextFileTest, ParseNumber) {
@@ -120,6 +166,14 @@ TEST_F(TextFileTest, ParseNumber) {
 TEST_F(TextFileTest, Trimmed) {
   EXPECT_EQ(trimmed(" \ta b\r "), "a b");
   EXPECT_EQ(trimmed(" \t\r"), "");
+}
+
+TEST_F(TextFileTest, WordsAndLists) {
+  const auto words = wordsOf(" a\tbc  d\r");
+  EXPECT_EQ(words, (std::vector<std::string>{"a", "bc", "d"}));
+  EXPECT_TRUE(wordsOf(" \t").empty());
+  EXPECT_EQ(joined(words), "a, bc, d");
+  EXPECT_EQ(joined(words, " "), "a bc d");
 }
 
 TEST_F(TextFileTest, Formats) {

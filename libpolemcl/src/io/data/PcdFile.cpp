@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include "io/file/Bytes.h"
 #include "io/file/ReadLimits.h"
@@ -33,11 +31,6 @@ struct Header {
   std::size_t lines = 0, bytes = 0;  ///< size of the header
   enum class Data { ascii, binary, compressed } data = Data::ascii;
 };
-
-std::vector<std::string> wordsOf(std::string_view line) {
-  std::istringstream in{std::string(line)};
-  return {std::istream_iterator<std::string>(in), {}};
-}
 
 std::size_t pcdCountOf(const std::string& word, const std::string& where) {
   const auto value = parseNumber(word);
@@ -279,6 +272,7 @@ Cloud readAscii(const Header& header, std::string_view data, const std::filesyst
 
 Cloud readPcd(const std::filesystem::path& file) {
   const std::string bytes = readBytes(file);
+  if (bytes.empty()) return {};
   const Header header = HeaderReader(file, bytes).read();
   const std::string_view data = std::string_view(bytes).substr(header.bytes);
   switch (header.data) {

@@ -16,9 +16,10 @@ constexpr const char* kTumLayout = "time x y z qx qy qz qw (s, m)";
 constexpr int kDecimals = 9;
 
 /// The first row, or the reason why this file has none.
-bool firstRow(NumberRowReader& rows, const std::filesystem::path& file, NumberRow& row) {
+bool firstRow(NumberRowReader& rows, const std::filesystem::path& file,
+              std::vector<double>& values) {
   try {
-    return rows.next(row);
+    return rows.next(values);
   } catch (const Error&) {
     const std::string kind = otherKind(file, ".tum");
     if (kind.empty()) throw;
@@ -32,16 +33,15 @@ void readTumRows(const std::filesystem::path& file,
   NumberRowReader rows(file, 8, kTumLayout);
   StampedPose3D entry;
   std::size_t count = 0;
-  NumberRow row;
-  for (bool more = firstRow(rows, file, row); more; more = rows.next(row), ++count) {
-    const std::vector<double>& v = row.values;
+  std::vector<double> v;
+  for (bool more = firstRow(rows, file, v); more; more = rows.next(v), ++count) {
     if (count > 0 && !(v[0] > entry.time)) {
-      throw Error(at(file, row.line) + "time " + significant(v[0], 17) + " is not after " +
+      throw Error(rows.at() + "time " + significant(v[0], 17) + " is not after " +
                   significant(entry.time, 17) + ", the one before");
     }
     const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
     if (std::abs(q.norm() - 1) > 0.01) {
-      throw Error(at(file, row.line) + "qx qy qz qw have length " + significant(q.norm(), 6) +
+      throw Error(rows.at() + "qx qy qz qw have length " + significant(q.norm(), 6) +
                   ", not 1; expected: " + kTumLayout);
     }
     entry.time = v[0];

@@ -8,7 +8,6 @@
 #include "io/dataset/ScanFiles.h"
 #include "io/dataset/ScanFixes.h"
 #include "io/dataset/ScanPoses.h"
-#include "io/file/CsvRows.h"
 
 namespace polemcl::io {
 
@@ -33,7 +32,8 @@ double seconds(std::uint64_t nanoseconds) {
 void addMulranTruth(const fs::path& file, const Eigen::Isometry3d& T_base_robot,
                     ScanFolder& result) {
   TrackSampler track(timesOf(result), kTrackGap);
-  CsvRows rows(file, 13, "time in ns, the vehicle's pose as row-major 3x4 matrix [R|t], m");
+  NumberRowReader rows(file, 13, "time in ns, the vehicle's pose as row-major 3x4 matrix [R|t], m",
+                       Separator::commas);
   std::vector<double> row, matrix;
   std::size_t unused = 0;
   while (rows.next(row)) {
@@ -47,7 +47,8 @@ void addMulranTruth(const fs::path& file, const Eigen::Isometry3d& T_base_robot,
 }
 
 void addMulranFixes(const fs::path& file, ScanFolder& result) {
-  CsvRows rows(file, 13, "time in ns, latitude, longitude, altitude, 3x3 covariance");
+  NumberRowReader rows(file, 13, "time in ns, latitude, longitude, altitude, 3x3 covariance",
+                       Separator::commas);
   std::vector<double> row;
   while (rows.next(row)) {
     GnssFix fix;

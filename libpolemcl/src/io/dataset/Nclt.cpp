@@ -10,7 +10,6 @@
 #include "io/dataset/NcltOdometry.h"
 #include "io/dataset/ScanFiles.h"
 #include "io/dataset/ScanPoses.h"
-#include "io/file/CsvRows.h"
 
 namespace polemcl::io {
 
@@ -98,29 +97,21 @@ void addTruth(const fs::path& file, const Eigen::Isometry3d& T_robot_body,
   T_map_truth.linear() << 0, 1, 0, 1, 0, 0, 0, 0, -1;
   const Eigen::Isometry3d T_body_robot = T_robot_body.inverse();
   TrackSampler track(timesOf(result), kTrackGap);
-  CsvRows rows(file, 7, "utime, x, y, z, roll, pitch, heading (us, m, rad)", progress);
+  NumberRowReader rows(file, 7, kNcltPoseLayout, Separator::commas, progress);
   std::vector<double> row;
-  std::size_t unknown = 0, disordered = 0;
+  std::size_t unused = 0;
   while (rows.next(row)) {
-    if (!allFinite(row)) {
-      ++unknown;
-    } else if (!track.add(row[0] * 1e-6, T_map_truth * ncltPose(row.data() + 1) * T_body_robot)) {
-      ++disordered;
-    }
+    if (!allFinite(row) ||
+        !track.add(row[0] * 1e-6, T_map_truth * ncltPose(row.data() + 1) * T_body_robot))
+      ++unused;
   }
-  const std::string name = file.filename().string();
-  if (unknown > 0)
-    result.notes.push_back(name + ": " + std::to_string(unknown) + " rows without a pose (NaN)");
-  if (disordered > 0)
-    result.notes.push_back(name + ": " + std::to_string(disordered) +
-                           " rows not later than the previous row, ignored");
+  noteUnusedRows(unused, file, result.notes);
   takePoses(result, track, file, "truth", "at times without truth");
 }
 
 /// Adds a note with the accuracy of the ground truth, as the dataset states it.
 void noteTruthAccuracy(const fs::path& file, const ReadProgress& progress, ScanFolder& result) {
-  CsvRows rows(file, 22, "utime, 21 numbers: the upper triangle of the covariance of the pose",
-               progress);
+  NumberRowReader rows(file, 22, kNcltCovarianceLayout, Separator::commas, progress);
   std::vector<double> row;
   double sum = 0, worst = 0;
   std::size_t count = 0;

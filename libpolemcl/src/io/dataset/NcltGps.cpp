@@ -9,8 +9,9 @@ namespace polemcl::io {
 
 void addNcltFixes(const std::filesystem::path& file, const ReadProgress& progress,
                   ScanFolder& folder) {
-  CsvRows rows(file, 8, "utime, mode, satellites, latitude, longitude, altitude, track, speed",
-               progress);
+  NumberRowReader rows(file, 8,
+                       "utime, mode, satellites, latitude, longitude, altitude, track, speed",
+                       Separator::commas, progress);
   std::vector<double> row;
   while (rows.next(row)) {
     if (row[1] != 2 && row[1] != 3) continue;

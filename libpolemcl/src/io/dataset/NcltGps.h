@@ -3,7 +3,7 @@
 /// \brief Positions from the GPS receiver of NCLT.
 
 #include "io/dataset/ScanFolder.h"
-#include "io/file/CsvRows.h"
+#include "io/file/TextFile.h"
 
 namespace polemcl::io {
 

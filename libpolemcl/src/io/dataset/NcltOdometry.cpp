@@ -15,9 +15,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kRelativeNoise = 0.05;  ///< per component, without covariances; own choice
-constexpr const char* kPoseLayout = "utime, x, y, z, roll, pitch, heading (us, m, rad)";
-constexpr const char* kCovarianceLayout =
-    "utime, 21 numbers: the upper triangle of the covariance of x y z roll pitch heading";
 
 /// Covariance of x, y and heading, from the 21 numbers of an upper triangle at `values`.
 Eigen::Matrix3d planarCovariance(const double* values) {
@@ -39,7 +36,10 @@ Eigen::Matrix3d planeChange(const Eigen::Isometry3d& T_robot_body) {
 /// The covariances of the steps, searched by time.
 class CovarianceRows {
  public:
-  explicit CovarianceRows(const fs::path& file) : m_rows(file, 22, kCovarianceLayout) { advance(); }
+  explicit CovarianceRows(const fs::path& file)
+      : m_rows(file, 22, kNcltCovarianceLayout, Separator::commas) {
+    advance();
+  }
 
   /// The covariance of the row nearest to `time`; nullopt if it is more than `reach` s away. Calls
   /// must have increasing times.
@@ -82,7 +82,7 @@ class CovarianceRows {
     }
   }
 
-  CsvRows m_rows;
+  NumberRowReader m_rows;
   std::optional<Row> m_before, m_next;
   std::size_t m_shifted = 0, m_missing = 0;  ///< steps with another time's covariance; with none
 };
@@ -106,7 +106,7 @@ NcltOdometry::NcltOdometry(const NcltOdometryFiles& files, std::vector<double> t
 
 void NcltOdometry::readTrack(const fs::path& file, std::vector<std::string>& notes,
                              const ReadProgress& progress) {
-  CsvRows rows(file, 7, kPoseLayout, progress);
+  NumberRowReader rows(file, 7, kNcltPoseLayout, Separator::commas, progress);
   std::vector<double> row;
   std::size_t unused = 0;
   while (rows.next(row)) {
@@ -117,7 +117,7 @@ void NcltOdometry::readTrack(const fs::path& file, std::vector<std::string>& not
 
 void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::string>& notes,
                              const ReadProgress& progress) {
-  CsvRows rows(files.steps, 7, kPoseLayout, progress);
+  NumberRowReader rows(files.steps, 7, kNcltPoseLayout, Separator::commas, progress);
   std::optional<CovarianceRows> covariances;
   if (!files.covariances.empty()) covariances.emplace(files.covariances);
   std::vector<double> row;

@@ -9,9 +9,16 @@
 #include "io/data/MotionSteps.h"
 #include "io/data/PlanarMotion.h"
 #include "io/data/TrackSampler.h"
-#include "io/file/CsvRows.h"
+#include "io/file/TextFile.h"
 
 namespace polemcl::io {
+
+/// \name Rows of NCLT's tables, for messages
+/// @{
+inline constexpr const char* kNcltPoseLayout = "utime, x, y, z, roll, pitch, heading (us, m, rad)";
+inline constexpr const char* kNcltCovarianceLayout =
+    "utime, 21 numbers: the upper triangle of the covariance of x y z roll pitch heading";
+/// @}
 
 /// \brief Pose from x y z roll pitch heading as NCLT writes them: m, rad, Rz·Ry·Rx.
 /// \param values Pointer to the six numbers.

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <polemcl/io/data/Cloud.h>
-#include "io/file/CsvRows.h"
+#include "io/file/TextFile.h"
 
 namespace polemcl::io {
 

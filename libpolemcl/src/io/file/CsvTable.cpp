@@ -38,7 +38,8 @@ CsvTable::CsvTable(const std::filesystem::path& file, char separator) : m_file(f
     const std::string_view line = trimmed(lines[i]);
     if (line.empty() || line.front() == '#') continue;
     const std::string where = io::at(file, i + 1);
-    Row row{i + 1, splitCsv(line, separator, where)};
+    // A tab at an end of the line may be a separator.
+    Row row{i + 1, splitCsv(separator == '\t' ? lines[i] : line, separator, where)};
     if (m_header.fields.empty()) {
       m_header = std::move(row);
     } else if (row.fields.size() != m_header.fields.size()) {

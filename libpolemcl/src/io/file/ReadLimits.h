@@ -9,8 +9,7 @@
 
 namespace polemcl::io {
 
-/// Largest text of a table, plain or gzip, bytes after decompression: a small gzip file can hold
-/// very much.
+/// Largest text of a table in gzip, bytes after decompression: a small file can hold very much.
 inline constexpr std::size_t kMostTextBytes = std::size_t{128} << 20;
 /// Most bytes that compressed tables, maps and scans may hold, by the bytes that they take. Numbers
 /// and text shrink to a third or a tenth of their size; the first part allows small empty ones.

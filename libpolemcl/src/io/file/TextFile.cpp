@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -22,10 +23,13 @@ LineReader::LineReader(const std::filesystem::path& file)
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
   const auto size = std::filesystem::file_size(file, ignored);
-  if (!ignored) m_most = std::min<std::uint64_t>(kMostTextBytes, mostInflated(size));
+  if (!ignored) m_size = size;
   errno = 0;
   m_stream.reset(gzopen(file.c_str(), "rb"));
   if (!m_stream) throw fail(errno != 0 ? std::strerror(errno) : "out of memory");
+  const bool isPlain = !ignored && gzdirect(m_stream.get()) != 0;
+  m_most = isPlain ? mostInflated(m_size)
+                   : std::min<std::uint64_t>(kMostTextBytes, mostInflated(m_size));
   readBlock();
   if (std::string_view(m_text).substr(0, 3) == "\xEF\xBB\xBF") m_begin = 3;
 }
@@ -70,6 +74,10 @@ bool LineReader::next(std::string& line) {
   return true;
 }
 
+std::uint64_t LineReader::done() const {
+  return static_cast<std::uint64_t>(std::max<z_off_t>(0, gzoffset(m_stream.get())));
+}
+
 std::string at(const std::filesystem::path& file, std::size_t line) {
   return file.string() + ":" + std::to_string(line) + ": ";
 }
@@ -78,6 +86,15 @@ std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string> wordsOf(std::string_view text) {
+  std::vector<std::string> words;
+  while (!(text = trimmed(text)).empty()) {
+    words.emplace_back(text.substr(0, text.find_first_of(" \t\r")));
+    text.remove_prefix(words.back().size());
+  }
+  return words;
 }
 
 std::vector<std::string> readLines(const std::filesystem::path& file) {
@@ -100,34 +117,54 @@ std::optional<double> parseNumber(std::string_view text) {
 }
 
 std::vector<double> parseNumbers(std::string_view text, const std::filesystem::path& file,
-                                 std::size_t line) {
+                                 std::size_t line, const std::string& layout, Separator separator) {
+  const bool isCsv = separator == Separator::commas;
   std::vector<double> values;
-  while (!(text = trimmed(text)).empty()) {
-    const std::string_view word = text.substr(0, text.find_first_of(" \t"));
+  text = trimmed(text);
+  for (bool more = !text.empty(); more;) {
+    const std::size_t end = text.find_first_of(isCsv ? "," : " \t");
+    const std::string_view word = trimmed(text.substr(0, end));
     const auto value = parseNumber(word);
-    if (!value || !std::isfinite(*value)) {
+    if (!value || !(isCsv || std::isfinite(*value)))
       throw Error(at(file, line) + "'" + std::string(word.substr(0, 40)) +
-                  "' is not a finite number");
-    }
+                  (isCsv ? "' is not a number" : "' is not a finite number") +
+                  (layout.empty() ? "" : "; expected: " + layout));
     values.push_back(*value);
-    text.remove_prefix(word.size());
+    more = end != std::string_view::npos;
+    if (more) text = trimmed(text.substr(end + 1));
   }
   return values;
 }
 
-NumberRowReader::NumberRowReader(const std::filesystem::path& file, std::size_t columns,
-                                 std::string layout)
-    : m_lines(file), m_file(file), m_columns(columns), m_layout(std::move(layout)) {}
+bool allFinite(const std::vector<double>& row) {
+  return std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); });
+}
 
-bool NumberRowReader::next(NumberRow& row) {
+NumberRowReader::NumberRowReader(const std::filesystem::path& file, std::size_t columns,
+                                 std::string layout, Separator separator, ReadProgress progress)
+    : m_lines(file),
+      m_file(file),
+      m_columns(columns),
+      m_layout(std::move(layout)),
+      m_separator(separator),
+      m_progress(std::move(progress)) {}
+
+std::string NumberRowReader::at() const {
+  return io::at(m_file, m_line);
+}
+
+bool NumberRowReader::next(std::vector<double>& values) {
+  constexpr std::size_t kLinesPerReport = 10000, kMegabyte = 1000000;
   while (m_lines.next(m_text)) {
     ++m_line;
-    const std::string_view line = std::string_view(m_text).substr(0, m_text.find('#'));
-    if (trimmed(line).empty()) continue;
-    row = {m_line, parseNumbers(line, m_file, m_line)};
-    if (row.values.size() != m_columns)
-      throw Error(at(m_file, m_line) + std::to_string(row.values.size()) + " numbers, " +
-                  std::to_string(m_columns) + " expected: " + m_layout);
+    if (m_progress && m_line % kLinesPerReport == 0)
+      m_progress(m_lines.done() / kMegabyte, m_lines.size() / kMegabyte);
+    const auto line = trimmed(std::string_view(m_text).substr(0, m_text.find('#')));
+    if (line.empty()) continue;
+    values = parseNumbers(line, m_file, m_line, m_layout, m_separator);
+    if (values.size() != m_columns)
+      throw Error(at() + std::to_string(values.size()) + " numbers, " + std::to_string(m_columns) +
+                  " expected: " + m_layout);
     return true;
   }
   return false;
@@ -137,7 +174,8 @@ std::vector<NumberRow> readNumberRows(const std::filesystem::path& file, std::si
                                       const std::string& layout) {
   NumberRowReader reader(file, columns, layout);
   std::vector<NumberRow> rows;
-  for (NumberRow row; reader.next(row);) rows.push_back(std::move(row));
+  for (std::vector<double> values; reader.next(values);)
+    rows.push_back({reader.line(), std::move(values)});
   return rows;
 }
 

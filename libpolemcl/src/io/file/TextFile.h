@@ -5,13 +5,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "io/file/ReadLimits.h"
 
 struct gzFile_s;
 
@@ -32,6 +31,9 @@ class LineReader {
   /// \return False at the end. \throws Error when the file cannot be read, is truncated, or holds
   ///         more than allowed (ReadLimits.h).
   bool next(std::string& line);
+  /// \brief Size of the file, and how much of it was read; bytes, as it lies on the disk.
+  std::uint64_t size() const { return m_size; }
+  std::uint64_t done() const;
 
  private:
   void readBlock();
@@ -41,37 +43,57 @@ class LineReader {
   std::string m_text;  ///< text read; the part from m_begin on is not returned yet
   std::size_t m_begin = 0;
   std::size_t m_read = 0;  ///< bytes, uncompressed
-  std::uint64_t m_most = kMostTextBytes;
+  std::uint64_t m_size = 0, m_most = 0;
   bool m_ended = false, m_cutShort = false;
 };
 
 /// \brief All lines, see LineReader. \throws Error as LineReader does.
 std::vector<std::string> readLines(const std::filesystem::path& file);
 
-/// \brief Reads lines of exactly `columns` numbers, separated by spaces or tabs. `#` starts a
-/// comment; blank lines are skipped.
-/// \param layout The columns, for messages: "time x y".
-/// \throws Error with file and line: wrong number of columns, not a number, NaN or infinite.
+/// \brief What stands between the numbers of a row. Between commas, a number may be `nan` or `inf`.
+enum class Separator { blanks, commas };
+
+/// \brief Called with the amount read and the total, both in the same unit.
+using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// \brief Reads lines of exactly `columns` numbers, one at a time, so that files may have any
+/// length. `#` starts a comment; blank lines are skipped. Plain text or gzip.
 class NumberRowReader {
  public:
-  NumberRowReader(const std::filesystem::path& file, std::size_t columns, std::string layout);
+  /// \param layout The columns, for messages: "time x y".
+  /// \param progress Called at intervals with the megabytes read and the size of the file; may be
+  ///        empty.
+  /// \throws Error as LineReader.
+  NumberRowReader(const std::filesystem::path& file, std::size_t columns, std::string layout,
+                  Separator separator = Separator::blanks, ReadProgress progress = {});
   /// \return False at the end.
-  bool next(NumberRow& row);
+  /// \throws Error with file and line: wrong number of columns, not a number, failed read.
+  bool next(std::vector<double>& values);
+  /// \brief The line read last, from 1 on; with the file for messages, "FILE:LINE: ".
+  std::size_t line() const { return m_line; }
+  std::string at() const;
 
  private:
   LineReader m_lines;
   std::filesystem::path m_file;
   std::size_t m_columns, m_line = 0;
   std::string m_layout, m_text;
+  Separator m_separator;
+  ReadProgress m_progress;
 };
 
 /// \brief All rows, see NumberRowReader.
 std::vector<NumberRow> readNumberRows(const std::filesystem::path& file, std::size_t columns,
                                       const std::string& layout);
 
-/// \brief The numbers of one line. \throws Error "FILE:LINE: …" as readNumberRows().
+/// \brief The numbers of one line. \param layout For messages, if not empty.
+/// \throws Error "FILE:LINE: …" for what is no number.
 std::vector<double> parseNumbers(std::string_view text, const std::filesystem::path& file,
-                                 std::size_t line);
+                                 std::size_t line, const std::string& layout = {},
+                                 Separator separator = Separator::blanks);
+
+/// \brief Whether no number of a row is NaN or infinite.
+bool allFinite(const std::vector<double>& row);
 
 /// \brief Parses the whole text as one number (surrounding spaces allowed); nullopt if it is not a
 /// number. `nan` and `inf` are accepted.
@@ -82,6 +104,16 @@ std::size_t characterLength(std::string_view text, std::size_t at);
 
 /// \brief The text without spaces, tabs and carriage returns at its ends.
 std::string_view trimmed(std::string_view text);
+
+/// \brief The words of a text, which spaces, tabs and carriage returns separate.
+std::vector<std::string> wordsOf(std::string_view text);
+/// \brief A list of the texts: "a, b".
+template <class Texts>
+std::string joined(const Texts& texts, const std::string& between = ", ") {
+  std::string list;
+  for (const std::string& text : texts) list += (list.empty() ? "" : between) + text;
+  return list;
+}
 
 /// \brief Text with this number of decimals: 1.5 -> "1.500000".
 std::string fixed(double value, int decimals);

@@ -33,8 +33,7 @@ Positions readNpz(const std::filesystem::path& file) {
     if (npz.contains(known)) name = known;
   }
   if (name.empty()) {
-    std::string found;
-    for (const std::string& other : npz.names()) found += (found.empty() ? "" : ", ") + other;
+    const std::string found = joined(npz.names());
     throw Error(file.string() + ": no array poleparams or polemeans in it (found: " +
                 (found.empty() ? "none" : found) + ")");
   }

@@ -5,6 +5,7 @@
 
 #include <polemcl/core/common/Types.h>
 #include "io/file/Decompress.h"
+#include "io/file/TextFile.h"
 #include "io/rosbag/BagFiles.h"
 #include "io/rosbag/McapStorage.h"
 #include "io/rosbag/SqliteStorage.h"
@@ -21,12 +22,6 @@ std::string currentName(std::string type) {
   if (slash != std::string::npos && type.find('/', slash + 1) == std::string::npos)
     type.insert(slash, "/msg");
   return type;
-}
-
-std::string joined(const std::set<std::string>& texts) {
-  std::string list;
-  for (const std::string& text : texts) list += (list.empty() ? "" : ", ") + text;
-  return list;
 }
 
 }  // namespace

@@ -2,28 +2,15 @@
 
 #include <algorithm>
 #include <cctype>
-#include <sstream>
 
 #include "core/common/Angles.h"
 #include "core/common/Binder.h"
 #include "core/extraction/ExtractionKeys.h"
 #include "core/sensor/SensorKeys.h"
+#include "io/file/TextFile.h"
 
 namespace polemcl {
 namespace {
-
-std::vector<std::string> wordsOf(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
-std::string joined(const std::vector<LidarOptions>& lidars) {
-  std::string labels;
-  for (const LidarOptions& lidar : lidars) labels += (labels.empty() ? "" : " ") + lidar.label;
-  return labels;
-}
 
 bool isName(const std::string& label) {
   return std::all_of(label.begin(), label.end(), [](unsigned char c) {
@@ -42,7 +29,7 @@ bool sameName(const std::string& a, const std::string& b) {
 std::vector<LidarOptions> lidarsOf(const Binder& b, const std::string& labels,
                                    const VehicleOptions& before, const LidarOptions& common) {
   std::vector<LidarOptions> lidars;
-  for (const std::string& label : wordsOf(labels)) {
+  for (const std::string& label : io::wordsOf(labels)) {
     const auto same = [&](const LidarOptions& other) { return sameName(other.label, label); };
     b.require(isName(label), "lidars", labels,
               "a list of sensor labels of letters, digits and _ - . / (" + label + " is not one)");
@@ -95,7 +82,9 @@ void bind(Binder& b, LidarOptions& lidar) {
 void bind(Binder& b, VehicleOptions& vehicle, const SensorOptions& sensor,
           const ExtractionOptions& extraction) {
   b.section("vehicle", "Several LiDARs on one vehicle", Tier::tuning);
-  std::string labels = joined(vehicle.lidars);
+  std::vector<std::string> known;
+  for (const LidarOptions& lidar : vehicle.lidars) known.push_back(lidar.label);
+  std::string labels = io::joined(known, " ");
   b.text("lidars", labels,
          "sensor labels of the LiDARs to use, with blanks between; their poles are fused. Empty: "
          "one LiDAR, that of the first scan");
