@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <random>
-#include <sstream>
 
 #include <polemcl/io/data/Cloud.h>
 #include "cli/RawlogActions.h"
@@ -19,6 +18,7 @@
 #include "io/dataset/Mulran.h"
 #include "io/dataset/Nclt.h"
 #include "io/dataset/Rosbag2.h"
+#include "io/dataset/ScanFiles.h"
 #include "io/dataset/ScanPoses.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
@@ -48,11 +48,10 @@ io::ScanFolder readDataset(const ImportOptions& options, const Eigen::Isometry3d
   switch (options.dataset) {
     case Dataset::kittiOdometry:
       return io::readKittiOdometry(options.input, T_robot_sensor);
-    case Dataset::kittiRaw: {
-      const auto drive = std::filesystem::absolute(options.input / "").parent_path();
-      return io::readKittiRaw(options.input, options.calibration.value_or(drive.parent_path()),
-                              T_robot_sensor);
-    }
+    case Dataset::kittiRaw:
+      return io::readKittiRaw(
+          options.input, options.calibration.value_or(io::folderNamed(options.input).parent_path()),
+          T_robot_sensor);
     case Dataset::nclt:
       return io::readNclt(options.input, T_robot_sensor, progress);
     case Dataset::mulran:
@@ -122,7 +121,7 @@ mrpt::obs::CObservationPointCloud::Ptr makeObservation(const io::ScanFolder& fol
   if (!report.embedded) {
     if (std::filesystem::file_size(scan.cloud) == 0) return nullptr;
     observation->setAsExternalStorage(
-        scan.cloud.lexically_normal().string(),
+        scan.cloud.string(),
         mrpt::obs::CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
     return observation;
   }
@@ -250,6 +249,7 @@ ScanTiming datasetTiming(Dataset dataset) {
 ImportReport importDataset(const ImportOptions& options,
                            const std::function<void(std::size_t, std::size_t)>& progress) {
   options.validate();
+  RawlogWriter rawlog(options.output.string());  // throws before the long work, not after it
   Eigen::Isometry3d T_robot_sensor =
       options.T_robot_sensor.value_or(datasetSensorPose(options.dataset));
   auto folder = readDataset(options, T_robot_sensor, progress);
@@ -266,7 +266,6 @@ ImportReport importDataset(const ImportOptions& options,
   ImportReport report;
   report.notes = folder.notes;
   report.embedded = options.embed || folder.read;
-  RawlogWriter rawlog(options.output.string());
   std::optional<io::AtomicFile> truthFile;
   if (folder.scans.front().T_map_robot) truthFile.emplace(truthBeside(options.output));
   std::vector<io::StampedPose3D> truth;
@@ -307,10 +306,8 @@ ImportReport importDataset(const ImportOptions& options,
 }
 
 Eigen::Isometry3d parseSensorPose(const std::string& text) {
-  std::istringstream words(text);
   std::vector<double> values;
-  std::string word;
-  while (words >> word) {
+  for (const std::string& word : io::wordsOf(text)) {
     const auto value = io::parseNumber(word);
     if (!value || !std::isfinite(*value)) throw Error("`" + word + "` is not a number");
     values.push_back(*value);
@@ -318,9 +315,8 @@ Eigen::Isometry3d parseSensorPose(const std::string& text) {
   if (values.size() != 6)
     throw Error("six numbers are needed, \"x y z yaw_deg pitch_deg roll_deg\", not " +
                 std::to_string(values.size()));
-  const mrpt::poses::CPose3D pose(values[0], values[1], values[2], values[3] * degree,
-                                  values[4] * degree, values[5] * degree);
-  return Eigen::Isometry3d(pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen());
+  return io::poseFromAngles({values[0], values[1], values[2]}, values[5] * degree,
+                            values[4] * degree, values[3] * degree);
 }
 
 }  // namespace polemcl::apps

@@ -8,6 +8,8 @@
 #include "cli/Version.h"
 #include "io/dataset/KittiOdometry.h"
 #include "io/dataset/LabelledScans.h"
+#include "io/dataset/ScanFiles.h"
+#include "io/file/AtomicFile.h"
 #include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 
@@ -28,7 +30,7 @@ void write(const LabelsOptions& options, const LabelsSummary& summary,
   map.poles = poles;
   map.info = {{"program", std::string("pole-labels ") + version()},
               {"build", buildIdentity()},
-              {"inputs", std::filesystem::absolute(options.input / "").parent_path().filename()},
+              {"inputs", io::folderNamed(options.input).filename()},
               {"scans", std::to_string(summary.scans)},
               {"points", std::to_string(summary.points)}};
   io::writePoleMap(options.output, map);
@@ -63,6 +65,7 @@ const Guides kLabelsGuides{
 LabelsSummary mapLabels(const LabelsOptions& options,
                         const std::function<void(std::size_t, std::size_t)>& progress) {
   isMap(options.output);
+  const io::AtomicFile early(options.output);  // throws before the long work, not after it
   LabelMapBuilder builder(options.labels);
   const auto sequence = io::readKittiOdometry(options.input, Eigen::Isometry3d::Identity());
   for (const io::ScanEntry& scan : sequence.scans) {

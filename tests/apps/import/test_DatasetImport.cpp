@@ -10,6 +10,7 @@
 #include "io/data/Trajectory.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/DiskCalls.h"
+#include "support/ExpectHas.h"
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_dataset_import {
@@ -308,6 +309,24 @@ TEST_F(DatasetImport, RefusesOptionsThatMakeNoSense) {
   options = good;
   options.output = folder / "out.tum";
   EXPECT_NE(errorOf().find("must end in .rawlog"), std::string::npos) << errorOf();
+}
+
+TEST_F(DatasetImport, RefusesAnOutputBeforeItReadsTheDataset) {
+  writeLine(options.input, 2);
+  writeText(options.input / "velodyne" / scanName(0), "damaged");
+  options.output = folder / "none" / "out.rawlog";
+  EXPECT_HAS(errorOf(), "cannot write " + options.output.string());
+}
+
+TEST_F(DatasetImport, PathsBehindSymbolicLinksStayWhatTheyAre) {
+  writeLine(folder / "real" / "data", 2);
+  fs::create_directories(folder / "real" / "b");
+  fs::create_directory_symlink(folder / "real" / "b", folder / "link");
+  options.input = folder / "link" / ".." / "data";
+  importDataset(options);
+  const auto cloud = readPairs(options.output).at(0).cloud;
+  EXPECT_TRUE(fs::equivalent(cloud->getExternalStorageFile(),
+                             folder / "real" / "data" / "velodyne" / scanName(0)));
 }
 
 TEST_F(DatasetImport, RefusesWhenAllSelectedScansAreEmpty) {

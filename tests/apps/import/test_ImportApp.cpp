@@ -150,6 +150,9 @@ TEST_F(ImportApp, ImportsKittiRawWithTheCalibrationOfItsDate) {
   auto outcome = runProgram(importMain, arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_HAS(commentOf(folder / "out.rawlog"), "turn = clockwise") << "raw scans";
+  auto here = arguments;
+  here[2] = (drive / ".").string();
+  EXPECT_EQ(runProgram(importMain, here).err, "");
   fs::rename(folder / "date" / "calib_imu_to_velo.txt", folder / "calib_imu_to_velo.txt");
   expectFailure(runProgram(importMain, arguments), {"calib_imu_to_velo.txt"});
   auto elsewhere = arguments;

@@ -83,7 +83,7 @@ TEST_F(ImportOwners, NcltTakesOneSessionOfSeveral) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("3 scans"), std::string::npos) << outcome.out;
   EXPECT_TRUE(fs::exists(folder / "out.tum"));
-  expectFailure(from({}), {"velodyne_data", "--session", "2012-01-15 2012-01-22"});
+  expectFailure(from({}), {"velodyne_data", "--session", "2012-01-15, 2012-01-22"});
   expectFailure(from({"--session", "2013-01-10"}), {"2013-01-10", "no such folder"});
   expectUsageError(run("folder", {"--session", "2012-01-22"}));
 }

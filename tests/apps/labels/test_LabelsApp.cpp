@@ -140,6 +140,14 @@ TEST_F(LabelsApp, RefusesWhatIsMissing) {
   EXPECT_FALSE(fs::exists(folder / "truth.polemap"));
 }
 
+TEST_F(LabelsApp, RefusesAnOutputBeforeItReadsScans) {
+  writeSequence(3);
+  writeText(folder / "00/labels/000000.label", "damaged");
+  expectFailure(run("none/truth.polemap"), {"cannot write", "none/truth.polemap"});
+  expectFailure(run(), {"000000.label"});
+  EXPECT_EQ(names(folder.path()), std::vector<std::string>({"00"}));
+}
+
 TEST_F(LabelsApp, WrongUsage) {
   expectUsageError(runProgram(labelsMain, {}));
   expectUsageError(runProgram(labelsMain, {"--input", "a"}));

@@ -134,6 +134,10 @@ TEST_F(PcdFileTest, FieldsMayBeOfAnyTypeAndOrder) {
   EXPECT_EQ(readPcd(write("b.pcd", text)).z, (std::vector<float>{2.5f}));
 }
 
+TEST_F(PcdFileTest, AnEmptyFileIsAnEmptyCloud) {
+  EXPECT_EQ(readPcd(write("a.pcd", "")).size(), 0u);
+}
+
 TEST_F(PcdFileTest, RefusesWhatIsNoPcd) {
   expectIn(refusal("ply\n"), path("a.pcd").string() + ":1: ", "'ply'");
   expectIn(refusal("VERSION 0.7\nFIELDS x y z"), "no line DATA");

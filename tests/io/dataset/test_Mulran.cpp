@@ -84,6 +84,12 @@ TEST_F(MulranTest, ScansWithoutTruthAreLeftOut) {
   expectIn(sequence.notes.at(0), "1 of 3 scans left out, at times without truth");
 }
 
+TEST_F(MulranTest, TablesMayBeCompressed) {
+  writeGzip(path("KAIST01/global_pose.csv.gz"), read(path("KAIST01/global_pose.csv")));
+  fs::remove(path("KAIST01/global_pose.csv"));
+  EXPECT_TRUE(load().scans[0].T_map_robot);
+}
+
 TEST_F(MulranTest, TheTruthMayBeMissing) {
   fs::remove(path("KAIST01/global_pose.csv"));
   const ScanFolder sequence = load();

@@ -62,7 +62,12 @@ TEST_F(NcltLayout, ArchivesUnpackedWhereTheDownloaderPutsThem) {
   expectWhole("nclt/2012-01-08", 100);
   expectWhole("nclt/2012-01-15", 200);
   expectWhole("nclt/velodyne_data/2012-01-15", 200);
-  EXPECT_REFUSED(load("nclt"), "several sessions", "--session", "2012-01-08 2012-01-15");
+  expectWhole("nclt/velodyne_data/2012-01-15/.", 200);
+  const fs::path truth = path("nclt/ground_truth/groundtruth_2012-01-15.csv");
+  writeGzip(truth.string() + ".gz", read(truth));
+  fs::remove(truth);
+  expectWhole("nclt/2012-01-15", 200);
+  EXPECT_REFUSED(load("nclt"), "several sessions", "--session", "2012-01-08, 2012-01-15");
   EXPECT_REFUSED(load("nclt/2012-01-22"), path("nclt/2012-01-22").string(), "no such folder",
                  "velodyne_data");
   EXPECT_FALSE(isNcltSession(path("nclt/2012-01-22")));

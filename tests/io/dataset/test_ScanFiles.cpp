@@ -26,6 +26,29 @@ TEST_F(ScanFilesTest, RefusesAMissingOrUselessFolder) {
   EXPECT_REFUSED(listFiles(m_folder, ".bin"), m_folder.string(), "no *.bin");
 }
 
+TEST_F(ScanFilesTest, NamesFolders) {
+  write("a/b/0.bin", "");
+  for (const char* name : {"a/b", "a/b/", "a/b/.", "a/b/./", "a/../a/b//", "a/b/c/.."})
+    EXPECT_EQ(folderNamed(path(name)), path("a/b")) << name;
+  EXPECT_EQ(folderNamed("."), fs::current_path());
+  EXPECT_EQ(folderNamed(path("no/./folder/")), path("no/folder"));
+  fs::create_directory_symlink(path("a/b"), path("link"));
+  EXPECT_EQ(folderNamed(path("link/.")), path("link"));
+  EXPECT_TRUE(fs::equivalent(folderNamed(path("link/..")), path("a")));
+  EXPECT_EQ(listFiles(path("link/../b/."), ".bin").at(0).filename(), "0.bin");
+  EXPECT_EQ(listFiles(path("a/./b"), ".bin").at(0), path("a/b/0.bin"));
+}
+
+TEST_F(ScanFilesTest, TablesMayBeCompressed) {
+  EXPECT_EQ(existing(path("a.csv")), "");
+  write("a.csv.gz", "");
+  write("a.bin.gz", "");
+  EXPECT_EQ(existing(path("a.csv")), path("a.csv.gz"));
+  EXPECT_EQ(existing(path("a.bin")), "");
+  write("a.csv", "");
+  EXPECT_EQ(existing(path("a.csv")), path("a.csv"));
+}
+
 TEST_F(ScanFilesTest, ALinkToNothingIsThere) {
   EXPECT_FALSE(isThere(path("f")));
   EXPECT_FALSE(isThere(path("no/f")));
@@ -83,6 +106,23 @@ TEST_F(ScanFilesTest, RefusesAScanCutShort) {
                  "No such file or directory");
   EXPECT_REFUSED(checkScanSizes({write("0.bin", ""), file}, notes), file.string(), "cut short",
                  "33 bytes");
+}
+
+TEST_F(ScanFilesTest, RefusesFiveNumbersAPoint) {
+  std::string five, four;
+  for (int i = 0; i < 32; ++i) {
+    const auto x = static_cast<float>(0.5 + i), ring = static_cast<float>(i);
+    five += floats({x, 2, -1, 50, ring});
+    four += floats({x, 2, -1, 50}) + (i % 4 == 3 ? floats({x, 3, -1, 50}) : "");
+  }
+  std::vector<std::string> notes;
+  ASSERT_EQ(four.size(), five.size());
+  checkScanSizes({write("0.bin", ""), write("1.bin", four)}, notes);
+  EXPECT_REFUSED(checkScanSizes({path("0.bin"), write("2.bin", five)}, notes),
+                 path("2.bin").string(), "five numbers a point", "keep the first four");
+  checkScanSizes({write("3.bin", four.substr(16)), path("2.bin")}, notes);  // another size
+  checkScanSizes({path("2.bin")}, notes, {8, "of NCLT"});
+  EXPECT_EQ(notes.size(), 1u);
 }
 
 TEST_F(ScanFilesTest, RefusesWhenAllScansAreEmpty) {

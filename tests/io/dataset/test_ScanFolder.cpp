@@ -70,24 +70,22 @@ TEST_F(ScanFolderTest, SensorPosesBecomeRobotPosesByHand) {
 }
 
 TEST_F(ScanFolderTest, MotionsAndTheirVariances) {
-  for (const char* name : {"odometry.txt", "odom.txt"}) {
-    write(name, "# dx dy dyaw sx sy syaw\n0.5 -0.01 0.02 0.1 0.2 0.3\n0.6 0 -3.14159 0 0 0\n");
-    const ScanFolder folder = readScanFolder(m_folder, kIdentity);
-    EXPECT_FALSE(folder.scans[0].motion);
-    const PoseWithCovariance& motion = *folder.scans[1].motion;
-    EXPECT_EQ(motion.mean.x, 0.5);
-    EXPECT_EQ(motion.mean.y, -0.01);
-    EXPECT_EQ(motion.mean.yaw, 0.02);
-    const Eigen::Matrix3d expected = Eigen::Vector3d(0.01, 0.04, 0.09).asDiagonal();
-    EXPECT_TRUE(motion.covariance.isApprox(expected, 1e-15));
-    EXPECT_EQ(folder.scans[2].motion->mean.x, 0.6);
-    fs::remove(path(name));
-  }
+  write("odometry.txt",
+        "# dx dy dyaw sx sy syaw\n0.5 -0.01 0.02 0.1 0.2 0.3\n0.6 0 -3.14159 0 0 0\n");
+  const ScanFolder folder = readScanFolder(m_folder, kIdentity);
+  EXPECT_FALSE(folder.scans[0].motion);
+  const PoseWithCovariance& motion = *folder.scans[1].motion;
+  EXPECT_EQ(motion.mean.x, 0.5);
+  EXPECT_EQ(motion.mean.y, -0.01);
+  EXPECT_EQ(motion.mean.yaw, 0.02);
+  const Eigen::Matrix3d expected = Eigen::Vector3d(0.01, 0.04, 0.09).asDiagonal();
+  EXPECT_TRUE(motion.covariance.isApprox(expected, 1e-15));
+  EXPECT_EQ(folder.scans[2].motion->mean.x, 0.6);
 }
 
 TEST_F(ScanFolderTest, MotionsAreNotMovedToTheRobotTwice) {
   // Motions are already in the robot frame, for any sensor pose.
-  write("odom.txt", "1 0 0 0.1 0.1 0.1\n1 0 0 0.1 0.1 0.1\n");
+  write("odometry.txt", "1 0 0 0.1 0.1 0.1\n1 0 0 0.1 0.1 0.1\n");
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
   T_robot_sensor.linear() =
       Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -98,7 +96,7 @@ TEST_F(ScanFolderTest, RowsBeyondTheLastScanAreNoted) {
   write("times.txt", "0\n1\n2\n3\n4\n");
   write("poses.txt", leftAt("0", "0", "0") + leftAt("1", "0", "0") + leftAt("2", "0", "0") +
                          leftAt("3", "0", "0"));
-  write("odom.txt", "1 0 0 1 1 1\n2 0 0 1 1 1\n3 0 0 1 1 1\n4 0 0 1 1 1\n");
+  write("odometry.txt", "1 0 0 1 1 1\n2 0 0 1 1 1\n3 0 0 1 1 1\n4 0 0 1 1 1\n");
   const ScanFolder folder = readScanFolder(m_folder, kIdentity);
   ASSERT_EQ(folder.notes.size(), 3u);
   EXPECT_EQ(folder.notes[0],
@@ -106,7 +104,7 @@ TEST_F(ScanFolderTest, RowsBeyondTheLastScanAreNoted) {
   EXPECT_EQ(folder.notes[1],
             "poses.txt: 4 poses for 3 scans in velodyne/; the last 1 are not used");
   EXPECT_EQ(folder.notes[2],
-            "odom.txt: 4 motions for 3 scans in velodyne/; the last 2 are not used");
+            "odometry.txt: 4 motions for 3 scans in velodyne/; the last 2 are not used");
   EXPECT_EQ(folder.scans[2].motion->mean.x, 2);
 }
 
@@ -122,7 +120,7 @@ TEST_F(ScanFolderTest, OneScanNeedsNoMotion) {
   fs::remove(path("velodyne/000001.bin"));
   fs::remove(path("velodyne/000002.bin"));
   write("times.txt", "7\n");
-  write("odom.txt", "# none\n");
+  write("odometry.txt", "# none\n");
   const ScanFolder folder = readScanFolder(m_folder, kIdentity);
   ASSERT_EQ(folder.scans.size(), 1u);
   EXPECT_EQ(folder.scans[0].time, 7);
@@ -180,12 +178,6 @@ TEST_F(ScanFolderTest, RefusesMorePosesWhenScansAreNotNumberedFromZero) {
   expectIn(refusal(), "not clear");
 }
 
-TEST_F(ScanFolderTest, RefusesTwoOdometryFiles) {
-  write("odometry.txt", "1 0 0 1 1 1\n1 0 0 1 1 1\n");
-  write("odom.txt", "1 0 0 1 1 1\n1 0 0 1 1 1\n");
-  expectIn(refusal(), "odometry.txt and odom.txt");
-}
-
 TEST_F(ScanFolderTest, RefusesAScanThatIsALinkToNothing) {
   fs::remove(path("velodyne/000001.bin"));
   fs::create_symlink(path("gone.bin"), path("velodyne/000001.bin"));
@@ -232,7 +224,7 @@ TEST_F(ScanFolderTest, ReadsTheRealScansWithoutOdometry) {
 TEST_F(ScanFolderTest, FoldersOfPcdFiles) {
   fs::remove_all(path("velodyne"));
   fs::remove(path("times.txt"));
-  for (const char* name : {"0.pcd", "1.pcd", "2.pcd"}) write(name, "");
+  for (const char* name : {"0.pcd", "1.pcd", "2.pcd"}) write(name, "#");
   const ScanFolder bare = readPcdFolder(m_folder, kIdentity);
   ASSERT_EQ(bare.scans.size(), 3u);
   EXPECT_EQ(bare.scans[2].cloud, path("2.pcd"));
@@ -250,6 +242,12 @@ TEST_F(ScanFolderTest, FoldersOfPcdFiles) {
   EXPECT_TRUE(full.scans[1].motion);
   write("times.txt", "5\n6\n");
   EXPECT_REFUSED(readPcdFolder(m_folder, kIdentity), "2 times for 3 scans");
+  write("times.txt", "5\n6\n7.5\n");
+  write("1.pcd", "");
+  const ScanFolder holed = readPcdFolder(m_folder, kIdentity);
+  ASSERT_EQ(holed.notes.size(), 1u);
+  EXPECT_EQ(holed.notes[0], "1 of 3 scans are empty, the first is 1.pcd");
+  EXPECT_EQ(holed.read(holed.scans[1]).size(), 0u);
 }
 
 }  // namespace polemcl::test_scan_folder

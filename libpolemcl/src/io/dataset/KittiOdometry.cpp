@@ -31,8 +31,7 @@ Eigen::Isometry3d readLidarInCamera(const fs::path& file) {
 
 fs::path findPoses(const fs::path& sequence) {
   if (isThere(sequence / "poses.txt")) return sequence / "poses.txt";
-  fs::path full = fs::absolute(sequence).lexically_normal();
-  if (!full.has_filename()) full = full.parent_path();  // the path ended in a slash
+  const fs::path full = folderNamed(sequence);
   const fs::path beside =
       full.parent_path().parent_path() / "poses" / (full.filename().string() + ".txt");
   return isThere(beside) ? beside : fs::path();

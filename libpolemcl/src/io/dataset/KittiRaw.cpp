@@ -4,7 +4,9 @@
 #include <cmath>
 #include <ctime>
 #include <map>
+#include <utility>
 
+#include "core/common/Angles.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/ScanFiles.h"
 #include "io/dataset/ScanFixes.h"
@@ -19,10 +21,6 @@ namespace {
 constexpr double kEarthRadius = 6378137;  ///< m, as in the devkit
 constexpr std::size_t kOxtsFields = 30;
 constexpr double kLeastFixSigma = 0.02;  ///< m
-
-double radians(double degrees) {
-  return degrees * M_PI / 180;
-}
 
 /// Times of the frames with these numbers. Lines are selected by frame number, or in order if the
 /// file has exactly one line per existing frame.
@@ -151,43 +149,26 @@ void noteOffsets(const fs::path& file, const Drive& drive, std::vector<std::stri
 
 Eigen::Isometry3d mercatorPose(const OxtsPose& measurement, double scale) {
   return poseFromAngles(
-      {scale * kEarthRadius * radians(measurement.longitude),
-       scale * kEarthRadius * std::log(std::tan(M_PI / 4 + radians(measurement.latitude) / 2)),
+      {scale * kEarthRadius * measurement.longitude * degree,
+       scale * kEarthRadius * std::log(std::tan(M_PI / 4 + measurement.latitude * degree / 2)),
        measurement.altitude},
       measurement.roll, measurement.pitch, measurement.yaw);
 }
 
 double parseKittiTime(std::string_view text, const std::string& where) {
-  text = trimmed(text);
-  const Error error(where + "'" + std::string(text.substr(0, 40)) +
-                    "' is not a time; expected: YYYY-MM-DD hh:mm:ss.fraction");
-  if (text.size() < 19 || text[4] != '-' || text[7] != '-' || text[10] != ' ' || text[13] != ':' ||
-      text[16] != ':') {
-    throw error;
-  }
-  const auto field = [&](std::size_t begin, std::size_t size) {
-    int value = 0;
-    for (const char c : text.substr(begin, size)) {
-      if (c < '0' || c > '9') throw error;
-      value = 10 * value + (c - '0');
-    }
-    return value;
-  };
-  const int year = field(0, 4), month = field(5, 2), day = field(8, 2);
-  const int hour = field(11, 2), minute = field(14, 2), second = field(17, 2);
-  const std::string_view tail = text.substr(19);
-  const bool digits = tail.find_first_not_of("0123456789", 1) == std::string_view::npos;
-  if (!tail.empty() && (tail.front() != '.' || tail.size() < 2 || !digits)) throw error;
-  std::tm date{};
-  date.tm_year = year - 1900;
-  date.tm_mon = month - 1;
-  date.tm_mday = day;
-  const auto midnight = static_cast<double>(::timegm(&date));
+  const std::string moment(trimmed(text));
+  std::tm parts{};
+  const char* const end = ::strptime(moment.c_str(), "%Y-%m-%d %H:%M:%S", &parts);
+  const std::string tail = end == moment.c_str() + 19 ? end : "none";
+  const int day = parts.tm_mday, second = std::exchange(parts.tm_sec, 0);
+  const auto minute = static_cast<double>(::timegm(&parts));
+  const bool isFraction = tail.size() > 1 && tail.front() == '.' &&
+                          tail.find_first_not_of("0123456789", 1) == std::string::npos;
   // A day that does not exist has become another one.
-  const bool exists = date.tm_mon == month - 1 && date.tm_mday == day;
-  if (!exists || hour > 23 || minute > 59 || second > 60) throw error;
-  const double fraction = tail.empty() ? 0 : *parseNumber("0" + std::string(tail));
-  return midnight + 3600 * hour + 60 * minute + second + fraction;
+  if (parts.tm_mday != day || second > 60 || !(tail.empty() || isFraction))
+    throw Error(where + "'" + moment.substr(0, 40) +
+                "' is not a time; expected: YYYY-MM-DD hh:mm:ss.fraction");
+  return minute + second + *parseNumber("0" + tail);
 }
 
 ScanFolder readKittiRaw(const fs::path& drive, const fs::path& calibration,
@@ -205,7 +186,7 @@ ScanFolder readKittiRaw(const fs::path& drive, const fs::path& calibration,
   }
 
   const OxtsPose first = readOxts(frames.oxts.begin()->second);
-  const double scale = std::cos(radians(first.latitude));
+  const double scale = std::cos(first.latitude * degree);
   const Eigen::Isometry3d T_world_first = mercatorPose(first, scale);
   // Levelled: use only the heading of the first frame, so that the map's z axis points up.
   Eigen::Isometry3d T_world_map = spatial(planar(T_world_first));

@@ -15,10 +15,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Path in the folder; if the file is missing there, path in its sensor_data/.
+/// Path in the folder or in its sensor_data/; empty if the file is in neither.
 fs::path findIn(const fs::path& sequence, const std::string& name) {
-  const fs::path below = sequence / "sensor_data" / name;
-  return isThere(sequence / name) || !isThere(below) ? sequence / name : below;
+  const fs::path here = existing(sequence / name);
+  return here.empty() ? existing(sequence / "sensor_data" / name) : here;
 }
 
 /// Converts nanoseconds to seconds. The whole seconds are converted separately: a double cannot
@@ -90,21 +90,22 @@ Eigen::Isometry3d mulranBaseLidar() {
 }
 
 ScanFolder readMulran(const fs::path& sequence, const Eigen::Isometry3d& T_robot_lidar) {
-  const auto files = listFiles(findIn(sequence, "Ouster"), ".bin");
+  const fs::path ouster = findIn(sequence, "Ouster");
+  const auto files = listFiles(ouster.empty() ? sequence / "Ouster" : ouster, ".bin");
   const auto names = fileNumbers(files);
   ScanFolder result;
   checkScanSizes(files, result.notes);
   for (std::size_t i = 0; i < files.size(); ++i)
     result.scans.push_back({files[i], 0, seconds(names[i])});
   const fs::path stamps = findIn(sequence, "ouster_front_stamp.csv");
-  if (isThere(stamps)) noteMissing(stamps, names, result);
+  if (!stamps.empty()) noteMissing(stamps, names, result);
   const fs::path truth = findIn(sequence, "global_pose.csv");
-  if (isThere(truth))
+  if (!truth.empty())
     addMulranTruth(truth, mulranBaseLidar() * T_robot_lidar.inverse(), result);
   else
     result.notes.push_back("no global_pose.csv");
   const fs::path gps = findIn(sequence, "gps.csv");
-  if (isThere(gps)) addMulranFixes(gps, result);
+  if (!gps.empty()) addMulranFixes(gps, result);
   return result;
 }
 

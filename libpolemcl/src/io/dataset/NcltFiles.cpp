@@ -52,7 +52,7 @@ struct Places {
 };
 
 Places placesOf(const fs::path& session) {
-  const fs::path whole = fs::absolute(session / "").parent_path();
+  const fs::path whole = folderNamed(session);
   Places places;
   places.date = dateIn(whole.filename().string());
   places.root = whole.parent_path();
@@ -78,11 +78,12 @@ Places placesOf(const fs::path& session) {
 fs::path findNamed(const std::vector<fs::path>& places, const std::string& name) {
   fs::path found;
   for (const fs::path& place : places) {
-    if (!isThere(place / name)) continue;
+    const fs::path here = existing(place / name);
+    if (here.empty()) continue;
     if (!found.empty())
-      throw Error(found.string() + " and " + (place / name).string() +
+      throw Error(found.string() + " and " + here.string() +
                   ": several of these; give the folder of one session, or its date (--session)");
-    found = place / name;
+    found = here;
   }
   return found;
 }
@@ -96,7 +97,7 @@ fs::path findDated(const Places& places, const std::string& prefix) {
     if (found.empty()) found = findNamed(places.shared, name);
     if (!found.empty()) return found;
   }
-  const std::regex pattern(prefix + "(_.*)?\\.csv");
+  const std::regex pattern(prefix + "(_.*)?\\.csv(\\.gz)?");
   fs::path found;
   std::error_code ignored;
   for (const fs::path& place : places.own) {
@@ -135,11 +136,10 @@ fs::path onlySession(const fs::path& folder) {
   if (!isFolder(folder / kScanArchives)) return folder;
   const auto dates = datesIn(folder);
   if (dates.size() == 1) return folder / *dates.begin();
-  std::string names;
-  for (const std::string& date : dates) names += " " + date;
   throw Error((folder / kScanArchives).string() +
-              (dates.empty() ? ": no session in it; unpack DATE_vel.tar.gz of NCLT there"
-                             : ": several sessions in it; choose one with --session:" + names));
+              (dates.empty()
+                   ? ": no session in it; unpack DATE_vel.tar.gz of NCLT there"
+                   : ": several sessions in it; choose one with --session: " + joined(dates)));
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 
 #include <polemcl/core/common/Types.h>
+#include "io/file/Bytes.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {
@@ -30,17 +32,59 @@ void requirePaddedNames(const std::vector<fs::path>& files) {
   }
 }
 
+constexpr std::size_t kBytesOfFive = 20;  ///< five float32
+
+/// Whether every fifth number of a file is a whole one, as the number of a ring, and others are
+/// not.
+bool hasRings(const fs::path& scan) {
+  const std::string bytes = readBytes(scan);
+  const auto isWhole = [&](std::size_t at) {
+    const auto value = loadLittleEndian<float>(bytes.data() + at);
+    return value >= 0 && value < 256 && value == std::floor(value);
+  };
+  bool others = false;
+  for (std::size_t point = 0; point < bytes.size(); point += kBytesOfFive) {
+    if (!isWhole(point + 16)) return false;
+    others = others || !isWhole(point);
+  }
+  return others;
+}
+
+/// Scans as those of nuScenes can have sizes that fit four numbers a point.
+void refuseFiveNumbers(const std::vector<fs::path>& scans) {
+  std::error_code ignored;
+  const fs::path* some = nullptr;
+  for (const fs::path& scan : scans) {
+    const auto size = fs::file_size(scan, ignored);
+    if (size % kBytesOfFive != 0) return;
+    if (size > 0) some = &scan;
+  }
+  if (some && hasRings(*some))
+    throw Error(some->string() +
+                ": five numbers a point, the last one a ring, as in nuScenes; keep the first "
+                "four, float32 x y z intensity");
+}
+
 }  // namespace
+
+fs::path folderNamed(const fs::path& folder) {
+  std::error_code ignored;
+  const fs::path full = fs::absolute(folder);
+  const fs::path normal = (full / "").lexically_normal().parent_path();
+  // They differ where .. follows a symbolic link.
+  const bool isOther = fs::exists(full, ignored) && !fs::equivalent(full, normal, ignored);
+  return isOther ? fs::canonical(full) : normal;
+}
 
 std::vector<fs::path> listFiles(const fs::path& folder, const std::string& ending) {
   std::error_code error, ignored;
   std::vector<fs::path> files;
-  for (auto entry = fs::directory_iterator(folder, error);
+  for (auto entry = fs::directory_iterator(folderNamed(folder), error);
        !error && entry != fs::directory_iterator(); entry.increment(error)) {
     const fs::path name = entry->path().filename();
     const bool wanted = name.extension() == ending && name.native().front() != '.';
     // A broken link is listed too, so that reading it fails with an error.
-    if (wanted && !entry->is_directory(ignored)) files.push_back(fs::absolute(entry->path()));
+    if (wanted && !entry->is_directory(ignored)) files.push_back(entry->path());
   }
   if (error) throw Error("cannot read the folder " + folder.string() + ": " + error.message());
   if (files.empty()) throw Error(folder.string() + ": no *" + ending + " file in it");
@@ -54,6 +98,12 @@ std::vector<fs::path> listFiles(const fs::path& folder, const std::string& endin
 bool isThere(const fs::path& file) {
   std::error_code ignored;
   return fs::symlink_status(file, ignored).type() != fs::file_type::not_found;
+}
+
+fs::path existing(const fs::path& file) {
+  if (isThere(file)) return file;
+  const fs::path packed = file.string() + ".gz";
+  return file.extension() == ".csv" && isThere(packed) ? packed : fs::path();
 }
 
 std::optional<std::uint64_t> fileNumber(const fs::path& file) {
@@ -98,6 +148,7 @@ std::string ranges(const std::vector<std::uint64_t>& numbers, std::size_t most) 
 
 void checkScanSizes(const std::vector<fs::path>& scans, std::vector<std::string>& notes,
                     const PointLayout& point) {
+  if (point.bytes == PointLayout().bytes) refuseFiveNumbers(scans);
   std::vector<fs::path> empty;
   for (const fs::path& scan : scans) {
     std::error_code error;

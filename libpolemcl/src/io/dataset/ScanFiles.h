@@ -15,9 +15,16 @@ namespace polemcl::io {
 std::vector<std::filesystem::path> listFiles(const std::filesystem::path& folder,
                                              const std::string& ending);
 
+/// \brief The absolute path of a folder, without `.`, `..` and a slash at its end, so that its name
+/// and the folder that holds it can be told.
+std::filesystem::path folderNamed(const std::filesystem::path& folder);
+
 /// \brief Whether an optional file exists. A broken link and an inaccessible file count as
 /// existing: reading them then fails with an error instead of skipping the file.
 bool isThere(const std::filesystem::path& file);
+/// \brief The file; where only NAME.csv.gz is there for NAME.csv, that one. \return Empty if there
+/// is none.
+std::filesystem::path existing(const std::filesystem::path& file);
 
 /// \brief 12 for ".../000012.bin"; nullopt if the name is not a number (or has more than 19
 /// digits).
@@ -36,7 +43,8 @@ struct PointLayout {
 };
 
 /// \brief Checks the sizes of scans (KITTI `.bin` by default) and adds a note about empty ones.
-/// \throws Error when a scan is truncated, or all are empty.
+/// \throws Error when a scan is truncated, or has five numbers a point where four are expected, or
+///         all are empty.
 void checkScanSizes(const std::vector<std::filesystem::path>& scans,
                     std::vector<std::string>& notes, const PointLayout& point = PointLayout{});
 

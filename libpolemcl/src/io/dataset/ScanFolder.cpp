@@ -107,12 +107,8 @@ void readMotions(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor
   if (isThere(folder / "poses.txt")) {
     readPoses(folder / "poses.txt", T_robot_sensor, scans, result);
   }
-  const fs::path odometry = folder / "odometry.txt", odom = folder / "odom.txt";
-  if (isThere(odometry) && isThere(odom)) {
-    throw Error(folder.string() + ": odometry.txt and odom.txt are both there; remove one of them");
-  }
-  for (const fs::path& file : {odometry, odom}) {
-    if (isThere(file)) readOdometry(file, scans, result);
+  if (isThere(folder / "odometry.txt")) {
+    readOdometry(folder / "odometry.txt", scans, result);
   }
 }
 
@@ -132,6 +128,7 @@ ScanFolder readPcdFolder(const fs::path& folder, const Eigen::Isometry3d& T_robo
   const Scans scans = listScans(folder, ".pcd", "");
   ScanFolder result;
   result.read = [](const ScanEntry& entry) { return readPcd(entry.cloud); };
+  checkScanSizes(scans.files, result.notes, {1, "bytes"});  // any size
   addScans(scans, result);
   if (isThere(folder / "times.txt")) {
     readTimes(folder / "times.txt", scans, result);

@@ -46,8 +46,8 @@ struct ScanFolder {
 /// - `velodyne/*.bin`, sorted by name
 /// - `times.txt`: one time per scan, s
 /// - `poses.txt` (optional): poses of the sensor in the map, see readKittiPoses()
-/// - `odometry.txt` or `odom.txt` (optional): one line per scan after the first, `dx dy dyaw sx sy
-///   syaw`: motion in the previous *robot* frame (m, m, rad) and its standard deviations
+/// - `odometry.txt` (optional): one line per scan after the first, `dx dy dyaw sx sy syaw`: motion
+///   in the previous *robot* frame (m, m, rad) and its standard deviations
 ///
 /// `#` starts a comment. Rows beyond the last scan are ignored with a note if the scans are
 /// numbered 0, 1, 2, …. With any other numbering they are an error, because the assignment of rows
@@ -56,14 +56,14 @@ struct ScanFolder {
 ///        poses.
 /// \throws Error with the file, and with both counts where they disagree: no scan, no usable
 ///         (non-empty) scan, fewer times, poses or motions than scans, times not increasing, a
-///         truncated scan, negative standard deviations, both odometry.txt and odom.txt, names with
-///         unpadded numbers (10.bin sorts before 2.bin).
+///         truncated scan, negative standard deviations, names with unpadded numbers (10.bin sorts
+///         before 2.bin).
 ScanFolder readScanFolder(const std::filesystem::path& folder,
                           const Eigen::Isometry3d& T_robot_sensor);
 
 /// \brief Reads a folder of `*.pcd`, sorted by name, with the same text files beside them. All text
 /// files are optional: without `times.txt` the scans are 0.1 s apart, with a note. The scans
-/// themselves are not read. \throws Error as readScanFolder().
+/// themselves are not read; empty files are noted. \throws Error as readScanFolder().
 ScanFolder readPcdFolder(const std::filesystem::path& folder,
                          const Eigen::Isometry3d& T_robot_sensor);
 
