@@ -92,6 +92,11 @@ TEST_F(BagTest, NothingIsWrittenBesideTheBag) {
   EXPECT_EQ(std::distance(fs::directory_iterator(m_folder), {}), 1);
 }
 
+TEST_F(BagTest, PathsMayBeginWithTwoSlashes) {
+  writeFile("a.db3", {"1"});
+  EXPECT_EQ(contents(Bag("/" + path("a.db3").string()), 1), std::vector<std::string>{"1"});
+}
+
 TEST_F(BagTest, ReadsChangesThatWereNotMerged) {
   TestBag open(path("a.db3"));
   open.run("PRAGMA journal_mode = WAL");

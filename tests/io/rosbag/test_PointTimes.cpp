@@ -45,6 +45,10 @@ TEST(PointTimes, FindsBothDirectionsAndAnyStamp) {
       }
 }
 
+TEST(PointTimes, StampsAtTheBeginAreNotMinusZero) {
+  EXPECT_FALSE(std::signbit(estimateOf({turn(1, 1, 0.0001)}).timing().stamp));
+}
+
 TEST(PointTimes, StampsOutsideTheTurnBecomeAnOffsetOfTheClock) {
   const RosCloud scan = turn(1, 1, -0.12, 0.1);  // stamped 20 ms after the end of the turn
   const ScanTiming timing = estimateOf({scan}).timing();

@@ -17,7 +17,7 @@ class FrameTree {
            const Eigen::Isometry3d& T_parent_child);
 
   /// \brief The pose of `frame` in `base`, m; identity if both are one. \return Nothing if they are
-  /// not connected, or the transforms go round in a circle.
+  /// not connected.
   std::optional<Eigen::Isometry3d> find(const std::string& base, const std::string& frame) const;
 
  private:

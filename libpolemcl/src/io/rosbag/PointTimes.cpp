@@ -185,8 +185,8 @@ ScanTiming TimingEstimate::timing() const {
   timing.turn = rate > 0 ? Turn::counterclockwise : Turn::clockwise;
   timing.seconds = 2 * M_PI / std::abs(rate);
   const double stamp = 0.5 - medianOf(middles) / timing.seconds;
-  timing.stamp = std::clamp(
-      std::abs(stamp - std::round(stamp)) < kRoundedStamp ? std::round(stamp) : stamp, 0.0, 1.0);
+  const double nearest = std::round(stamp) + 0.0;  // not -0
+  timing.stamp = std::clamp(std::abs(stamp - nearest) < kRoundedStamp ? nearest : stamp, 0.0, 1.0);
   // A stamp outside the turn is one of another clock.
   if (std::abs(timing.stamp - stamp) > kRoundedStamp)
     timing.clock = (timing.stamp - stamp) * timing.seconds;

@@ -24,8 +24,8 @@ std::uintmax_t unmergedBytes(const fs::path& file) {
 /// The path as SQLite takes it, with the promise that nobody writes to the file. Without that,
 /// SQLite puts files beside it. With changes that were not yet merged into the file, it must.
 std::string uriOf(const fs::path& file) {
-  std::string uri = "file:";
-  for (const char c : file.string()) {
+  std::string uri = "file://";
+  for (const char c : fs::absolute(file).string()) {
     if (c == '%' || c == '?' || c == '#') {
       constexpr const char* kDigits = "0123456789abcdef";
       uri += {'%', kDigits[c >> 4], kDigits[c & 15]};
