@@ -47,10 +47,11 @@ class Feature {
   bool isPoint() const {
     if (!m_json.is_object() || !m_json.contains("geometry")) fail("no feature with a geometry");
     const Json& geometry = m_json["geometry"];
-    return geometry.is_object() && geometry.value("type", Json()) == "Point";
+    return geometry.is_object() && (geometry.value("type", Json()) == "Point" || isOneOfMany());
   }
   Eigen::Vector2d coordinates() const {
-    const Json& at = m_json["geometry"].value("coordinates", Json());
+    const Json& all = m_json["geometry"].value("coordinates", Json());
+    const Json& at = isOneOfMany() ? all[0] : all;
     if (!at.is_array() || at.size() < 2 || !at[0].is_number() || !at[1].is_number())
       fail("a point needs coordinates [longitude, latitude]");
     return {at[0].get<double>(), at[1].get<double>()};
@@ -110,6 +111,13 @@ class Feature {
   }
 
  private:
+  /// A MultiPoint of one point, as some programs write all points.
+  bool isOneOfMany() const {
+    const Json& geometry = m_json["geometry"];
+    const Json& points = geometry.value("coordinates", Json());
+    return geometry.value("type", Json()) == "MultiPoint" && points.is_array() &&
+           points.size() == 1;
+  }
   [[noreturn]] void fail(const std::string& what) const { throw Error(m_where + what); }
   const Json& m_json;
   std::string m_where;
@@ -197,6 +205,12 @@ void writeGeoJson(const std::filesystem::path& file, const io::PoleMapData& map)
   output.commit();
 }
 
+std::string othersText(std::size_t others) {
+  return others == 0
+             ? ""
+             : "; features that are no points: " + std::to_string(others) + "; make points of them";
+}
+
 std::vector<GeoJsonPoint> readGeoJsonPoints(const std::filesystem::path& file, std::size_t& left) {
   const Json json = parsed(file);
   std::vector<GeoJsonPoint> points;
@@ -233,7 +247,7 @@ io::PoleMapData readGeoJson(const std::filesystem::path& file,
     map.poles.push_back(poleOf(feature, plane));
     if (feature.has("existence")) map.histories.push_back(historyOf(feature));
   }
-  if (map.poles.empty()) throw Error(where + "no point in it");
+  if (map.poles.empty()) throw Error(where + "no point in it" + othersText(others));
   if (map.histories.size() != map.poles.size()) map.histories.clear();
   if (left) *left = others;
   return map;

@@ -25,7 +25,8 @@ void writeGeoJson(const std::filesystem::path& file, const io::PoleMapData& map)
 
 /// \brief Reads the points of a FeatureCollection. What a point does not tell gets defaults: radius
 /// 0.1, bottom 0 and top 0 (not known), confidence 1, count 1, covariance 0.01 m² each way; points
-/// have histories if all of them tell an existence. Other geometries are left out.
+/// have histories if all of them tell an existence. A MultiPoint of one point is a point. Other
+/// geometries are left out.
 /// \param datum Where the file has none; must be the same where it has one.
 /// \param left If given: how many features were no points.
 /// \throws Error naming the feature: not GeoJSON, no point in it, numbers that are none or out of
@@ -33,6 +34,9 @@ void writeGeoJson(const std::filesystem::path& file, const io::PoleMapData& map)
 io::PoleMapData readGeoJson(const std::filesystem::path& file,
                             const std::optional<io::Datum>& datum = std::nullopt,
                             std::size_t* left = nullptr);
+
+/// \brief The end of a message that there is no point; empty if there are no others either.
+std::string othersText(std::size_t others);
 
 /// \brief A point of other people's GeoJSON.
 struct GeoJsonPoint {

@@ -12,6 +12,7 @@
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
 #include "map/CoordinateSystem.h"
+#include "map/GeoJson.h"
 #include "map/Inventory.h"
 
 namespace polemcl::apps {
@@ -174,7 +175,8 @@ MapImportSummary importMap(const MapImportOptions& options) {
     throw Error(options.output.string() + ": the map to write must end in .polemap");
   MapImportSummary summary;
   std::vector<InventoryEntry> entries = readInventory(options, summary.others);
-  if (entries.empty()) throw Error(options.input.string() + ": no pole in it");
+  if (entries.empty())
+    throw Error(options.input.string() + ": no pole in it" + othersText(summary.others));
   requireRadii(entries, options);
   summary.found = found(entries, options.keep);
   const auto kept =

@@ -58,6 +58,10 @@ class GeoJson : public testing::Test {
   samples::Folder folder{"GeoJson"};
 };
 
+std::string multiPoint(const std::string& places) {
+  return R"({"type":"Feature","geometry":{"type":"MultiPoint","coordinates":[)" + places + "]}}";
+}
+
 std::string points(const std::string& features) {
   return R"({"type":"FeatureCollection","features":[)" + features + "]}";
 }
@@ -117,18 +121,20 @@ TEST_F(GeoJson, ReadsPointsOfOthers) {
       points(point("8.001, 50.001, 120") + "," +
              R"({"type":"Feature","geometry":{"type":"LineString","coordinates":[[1,2],[3,4]]}})" +
              "," + R"({"type":"Feature","geometry":null,"properties":{}},)" +
+             multiPoint("[8, 50.002], [8, 50.003]") + "," + multiPoint("[8, 50.002]") + "," +
              point("8, 50", R"({"radius":0.25,"top":5,"name":"lamp","first_seen":"2020-02-03"})")));
   std::size_t left = 0;
   const auto map = readGeoJson(file, home, &left);
-  EXPECT_EQ(left, 2u);
-  ASSERT_EQ(map.poles.size(), 2u);
+  EXPECT_EQ(left, 3u);
+  ASSERT_EQ(map.poles.size(), 3u);
   EXPECT_NEAR(map.poles[0].x, 71.7, 0.1);
   EXPECT_NEAR(map.poles[0].y, 111.2, 0.1);
   EXPECT_EQ(map.poles[0].radius, 0.1);
   EXPECT_EQ(map.poles[0].count, 1u);
-  EXPECT_NEAR(map.poles[1].x, 0, 1e-6);
-  EXPECT_EQ(map.poles[1].radius, 0.25);
-  EXPECT_EQ(map.poles[1].top, 5);
+  EXPECT_NEAR(map.poles[1].y, 222.5, 0.1) << "many points that are one";
+  EXPECT_NEAR(map.poles[2].x, 0, 1e-6);
+  EXPECT_EQ(map.poles[2].radius, 0.25);
+  EXPECT_EQ(map.poles[2].top, 5);
   EXPECT_TRUE(map.histories.empty());
   EXPECT_EQ(map.info.at("datum"), "50,8,0");
 }
@@ -152,6 +158,9 @@ TEST_F(GeoJson, RefusesWhatIsNone) {
   EXPECT_HAS(refusal("[1]"), "FeatureCollection");
   EXPECT_HAS(refusal(R"({"type":"FeatureCollection"})"), "FeatureCollection");
   EXPECT_HAS(refusal(points(""), home), "no point in it");
+  EXPECT_HAS(refusal(points(multiPoint("[8, 50], [8, 51]")), home),
+             "no point in it; features that are no points: 1; make points of them");
+  EXPECT_HAS(refusal(points(multiPoint("8")), home), "[longitude, latitude]");
   EXPECT_HAS(refusal(points("3"), home), "feature 0");
   EXPECT_HAS(refusal(points(point("8")), home), "[longitude, latitude]");
   EXPECT_HAS(refusal(points(point("8,\"50\"")), home), "[longitude, latitude]");

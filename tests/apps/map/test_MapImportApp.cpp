@@ -176,6 +176,9 @@ TEST_F(MapImportApp, BadInventoriesAreRefusedWithTheirPlace) {
   EXPECT_HAS(failure("a.osm", "<osm><way><nd ref='1'/><tag k='type' v='pole'/></way></osm>"),
              "has no node of this file");
   EXPECT_HAS(failure("a.json", "{}"), "is no GeoJSON FeatureCollection");
+  EXPECT_HAS(failure("a.json", R"({"type":"FeatureCollection","features":[{"type":"Feature",
+             "geometry":{"type":"MultiPoint","coordinates":[[8,50],[8,51]]}}]})"),
+             "no pole in it; features that are no points: 1");
   EXPECT_EQ(import("a.csv", s_utm, {"--keep", "tree"}).code, 2);
   EXPECT_EQ(import("a.csv", s_utm, {"--columns", "a"}).code, 2);
 }
