@@ -17,6 +17,7 @@
 #include "config/TimingComment.h"
 #include "core/common/Binder.h"
 #include "core/common/Covariance.h"
+#include "io/file/TextFile.h"
 #include "mrpt/common/BoundedRead.h"
 #include "mrpt/observation/ObservationPoints.h"
 #include "mrpt/observation/ScanFusion.h"
@@ -236,7 +237,6 @@ void ScanSource::takeGroups() {
 
 void ScanSource::take(const RawlogEntry& entry) {
   if (entry.action) {
-    m_anyAction = true;
     try {
       if (const auto motion = motionOf(*entry.action, m_options)) {
         m_moved = m_moved ? io::composeMotions(*m_moved, *motion) : *motion;
@@ -254,12 +254,12 @@ void ScanSource::take(const RawlogEntry& entry) {
   for (const auto& observation : *entry.frame) take(observation, entry);
 }
 
-/// The first scan waits for the second, which tells its velocity; without actions, a scan waits for
-/// odometry later than itself. Those of sensors have waited.
+/// The first scan waits for the second, which tells its velocity; without motions by actions, a
+/// scan waits for odometry later than itself. Those of sensors have waited.
 bool ScanSource::mustWait(const Scan& scan) const {
   if (m_entries->isLive()) return false;
   if (!m_ended && m_released == 0 && m_waiting.size() < 2) return true;
-  return !m_ended && !m_anyAction && !m_odometry.reaches(scan.time) &&
+  return !m_ended && m_motions == 0 && !m_odometry.reaches(scan.time) &&
          m_waiting.size() < kMostWaiting;
 }
 
@@ -322,12 +322,11 @@ void ScanSource::requireLidars() const {
   if (!m_groups || m_entries->isLive() || !(m_ended || m_scans >= kMostWithoutLidar)) return;
   for (std::size_t i = 0; i < m_ofLidar.size(); ++i) {
     if (m_ofLidar[i] > 0) continue;
-    std::string others;
-    for (const std::string& label : m_otherLabels) others += (others.empty() ? "" : ", ") + label;
     throw Error(m_name + ": no scan of the LiDAR " + m_vehicle.lidars[i].label +
                 " that [vehicle] lidars lists" +
                 (m_ended ? "" : " in the first " + std::to_string(m_scans) + " scans") +
-                "; scans of other sensors: " + (others.empty() ? "none" : others) +
+                "; scans of other sensors: " +
+                (m_otherLabels.empty() ? "none" : io::joined(m_otherLabels)) +
                 "; write the sensor labels that are in the rawlog");
   }
 }

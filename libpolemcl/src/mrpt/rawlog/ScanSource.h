@@ -106,7 +106,7 @@ class ScanSource {
   std::string m_sensor;        ///< class and label of the scans in use; empty before the first
   double m_lastTime = 0;       ///< time of the last scan released
   std::exception_ptr m_error;  ///< reason why reading ended
-  bool m_ended = false, m_anyAction = false;
+  bool m_ended = false;
   const VehicleOptions m_vehicle;
   std::optional<ScanGroups> m_groups;          ///< of several LiDARs; not for poles fused before
   std::vector<std::size_t> m_ofLidar, m_late;  ///< scans of each LiDAR: all, and those too late
