@@ -31,12 +31,6 @@ std::string withoutComment(const std::string& line) {
   return std::string(io::trimmed(line));
 }
 
-std::string joined(const std::set<std::string>& words) {
-  std::string text;
-  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 /// Letters to change, to add or to drop until both are the same (Levenshtein).
 std::size_t editDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -55,7 +49,7 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 /// The words that are known, and of these or the others the one that was probably meant.
 std::string knownWords(std::set<std::string> words, const std::string& found,
                        const std::set<std::string>& others = {}) {
-  const std::string known = joined(words);
+  const std::string known = io::joined(words);
   words.insert(others.begin(), others.end());
   const auto distance = [&](const std::string& word) { return editDistance(lower(found), word); };
   const auto nearest =
@@ -128,6 +122,11 @@ std::optional<std::string> faultOfRemoved(const std::string& section, const std:
   return "is no setting since version 2; it is always " + fixed + ". Remove the line";
 }
 
+std::string installedText() {
+  const bool isThere = !io::fileOfDataFolder("kitti.ini", "config").empty();
+  return isThere ? "; installed are kitti.ini, hdl32e.ini and others" : "";
+}
+
 }  // namespace
 
 ConfigFile ConfigFile::fromText(const std::string& text, const std::string& name) {
@@ -153,8 +152,7 @@ ConfigFile ConfigFile::fromText(const std::string& text, const std::string& name
 
 ConfigFile ConfigFile::read(const std::string& path) {
   if (const std::string kind = io::otherKind(path, ".ini"); !kind.empty())
-    throw Error(path + ": " + kind + "not an INI file of settings; installed are kitti.ini, " +
-                "hdl32e.ini and others");
+    throw Error(path + ": " + kind + "not an INI file of settings" + installedText());
   std::string text;
   for (const auto& line : io::readLines(path)) text += line + "\n";
   return fromText(text, path);
@@ -165,7 +163,7 @@ ConfigFile ConfigFile::readInstalled(const std::string& pathOrName) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored))
     throw Error("cannot read " + pathOrName + ": no such file here, and none of that name is " +
-                "installed; installed are kitti.ini, hdl32e.ini and others");
+                "installed" + installedText());
   return read(file.string());
 }
 
@@ -251,7 +249,7 @@ std::string ConfigReader::unknownSection(const std::string& section,
          (section.find(':') == std::string::npos
               ? knownWords(known, section, others)
               : "[vehicle] lidars must list the label behind the colon; known are: " +
-                    joined(known));
+                    io::joined(known));
 }
 
 void ConfigWriter::openSection(const std::string& comment) {
