@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "config/Config.h"
+#include "core/common/Angles.h"
 #include "core/common/Binder.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
@@ -14,11 +15,11 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr double kMovingArc = 10 * M_PI / 180;  ///< rad; wider than lasers of one firing differ
-constexpr double kUsualDistance = 0.08;         ///< m; see share/doc/motion.md
+constexpr double kMovingArc = 10 * degree;  ///< rad; wider than lasers of one firing differ
+constexpr double kUsualDistance = 0.08;     ///< m; see share/doc/motion.md
 
 std::string degrees(double radians, int digits = 2) {
-  return io::fixed(radians * 180 / M_PI, digits);
+  return io::fixed(radians / degree, digits);
 }
 
 void printBeams(std::ostream& out, const SensorIdentification& sensor) {

@@ -15,8 +15,8 @@ namespace {
 
 void readPolemap(std::string_view bytes) {
   const auto file = fileOf("a.polemap", bytes);
-  io::readPoleMap(file);
-  io::readMapScans(file);
+  std::optional<AddedSessions> scans;
+  io::readPoleMap(file, &scans);
 }
 
 void readNpz(std::string_view bytes) {

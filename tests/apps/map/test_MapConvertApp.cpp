@@ -80,18 +80,21 @@ TEST_F(MapConvertApp, ReadsMapAndScansAtOnceAsAnotherMayReplaceThem) {
   const testing_disk::DiskCalls calls;
   ASSERT_EQ(convert("m.polemap", "n.polemap").code, 0);
   EXPECT_EQ(calls.of("open m.polemap").size(), 1u);
-  EXPECT_TRUE(io::readMapScans(folder / "n.polemap"));
+  std::optional<AddedSessions> kept;
+  io::readPoleMap(folder / "n.polemap", &kept);
+  EXPECT_TRUE(kept);
 }
 
 TEST_F(MapConvertApp, GivesAMapItsDatumAndKeepsTheRest) {
   const auto outcome = convert("m.polemap", "m.polemap", {"--datum", "50,8"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const auto map = io::readPoleMap(folder / "m.polemap");
+  std::optional<AddedSessions> kept;
+  const auto map = io::readPoleMap(folder / "m.polemap", &kept);
   EXPECT_EQ(map.info.at("datum"), "50,8,0");
   EXPECT_EQ(map.info.at("program"), "pole-map 1");
   EXPECT_EQ(map.info.count("converted_from"), 0u);
   EXPECT_EQ(map.candidates.size(), 1u);
-  ASSERT_TRUE(io::readMapScans(folder / "m.polemap"));
+  ASSERT_TRUE(kept);
   EXPECT_EQ(convert("m.polemap", "m.geojson").code, 0);  // it knows where it is now
   expectFailure(convert("m.polemap", "n.polemap", {"--datum", "50,9"}), {"m.polemap", "50,8,0"});
 }

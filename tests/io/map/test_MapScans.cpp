@@ -100,12 +100,14 @@ TEST_F(MapScans, TravelInTheMapBesideItsPoles) {
   const AddedSessions scans = sample();
   writePoleMap(with, onePole(), &scans);
   writePoleMap(without, onePole());
-  EXPECT_FALSE(readMapScans(without));
-  const auto found = readMapScans(with);
+  std::optional<AddedSessions> found;
+  readPoleMap(without, &found);
+  EXPECT_FALSE(found);
+  const PoleMapData map = readPoleMap(with, &found);
   ASSERT_TRUE(found);
   expectSame(*found, scans);
-  EXPECT_EQ(readPoleMap(with).poles.size(), 1u);
-  EXPECT_EQ(readPoleMap(with).info, onePole().info);
+  EXPECT_EQ(map.poles.size(), 1u);
+  EXPECT_EQ(map.info, onePole().info);
 }
 
 TEST_F(MapScans, RefuseToBeDamaged) {

@@ -251,14 +251,6 @@ void writePoleMap(const std::filesystem::path& file, const PoleMapData& data,
   writeFile(file, header.bytes() + payload);
 }
 
-std::optional<AddedSessions> readMapScans(const std::filesystem::path& file) {
-  std::optional<AddedSessions> scans;
-  eachChunk(file, [&](std::string_view tag, std::string_view content, const std::string& where) {
-    if (tag == "SCAN") scans = unpackMapScans(content, where);
-  });
-  return scans;
-}
-
 PoleMapData readPoleMap(const std::filesystem::path& file, std::optional<AddedSessions>* scans) {
   PoleMapData data;
   bool hasPoles = false;

@@ -59,11 +59,8 @@ POLEMCL_EXPORT void requireSound(const PoleMapData& data, const std::string& whe
 POLEMCL_EXPORT void writePoleMap(const std::filesystem::path& file, const PoleMapData& data,
                                  const AddedSessions* scans = nullptr);
 
-/// \brief The scans stored in the file; nullopt if it has none. \throws Error as readPoleMap().
-POLEMCL_EXPORT std::optional<AddedSessions> readMapScans(const std::filesystem::path& file);
-
-/// \param scans Gets the scans as readMapScans() does, of the same bytes: another program may
-/// replace the file at any moment.
+/// \param scans Gets the scans stored in the file, if it has some; of the same bytes, because
+/// another program may replace the file at any moment.
 /// \throws Error when the file cannot be read, is not a pole map, is truncated or damaged, was
 ///         written by a newer version, or holds poles that writePoleMap() rejects.
 POLEMCL_EXPORT PoleMapData readPoleMap(const std::filesystem::path& file,
