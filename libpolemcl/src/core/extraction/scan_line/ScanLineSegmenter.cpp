@@ -40,7 +40,7 @@ class Row {
     }
     const float turn = turnOf(run.first, run.last);
     if (rho * turn > m_limits.maxWidth || farthest - rho > m_limits.maxWidth) return;
-    ScanLineSegment segment;
+    ScanLineSegment& segment = segments.emplace_back();
     segment.left = run.left;
     segment.right = run.right;
     segment.row = m_row;
@@ -51,7 +51,6 @@ class Row {
     segment.rho = rho;
     segment.z = z / static_cast<float>(segment.count);
     placeFront(begin, end, segment);
-    segments.push_back(segment);
   }
 
   /// From the first to the last return of a run, rad.
