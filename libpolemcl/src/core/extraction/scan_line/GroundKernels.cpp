@@ -55,7 +55,7 @@ class CellFinder {
     // False for what is not a number; and zeros are what sensors give for no return.
     const auto valid = hn::And(hn::Gt(rho, hn::Zero(d)),
                                hn::Le(hn::Abs(vz), hn::Set(d, std::numeric_limits<float>::max())));
-    const auto sure = hn::Lt(offBy, hn::Set(d, 0.498f));
+    const auto sure = hn::Lt(offBy, hn::Set(d, 0.499f));
     if (HWY_LIKELY(hn::AllTrue(d, hn::And(hn::And(inRange, valid), sure)))) {
       hn::StoreU(hn::DemoteTo(D16(), cellOf(sector, rho)), D16(), to);
     } else {

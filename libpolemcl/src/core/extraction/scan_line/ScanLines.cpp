@@ -165,9 +165,9 @@ void ScanLines::joinHalves(int row) {
   m_end[row] = m_next[back] + m_next[ahead] - m_streamBegin[ahead];
 }
 
-/// Notes for each part of the turn a return near its first one; every fourth return is looked at.
+/// Notes for each part of the turn a return near its first one; every eighth return is looked at.
 void ScanLines::index(int row) {
-  constexpr std::uint32_t kStep = 4;
+  constexpr std::uint32_t kStep = 8;
   std::uint32_t* hint = m_hint.data() + static_cast<std::size_t>(row) * kParts;
   std::fill(hint, hint + kParts, 0u);
   const Return* returns = begin(row);
