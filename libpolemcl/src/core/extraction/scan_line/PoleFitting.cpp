@@ -22,7 +22,7 @@ constexpr double kThinnestBoard = 0.12;  ///< m: half its width
 constexpr double kFlatter = 0.8;         ///< a board's residuals against a cylinder's, at most
 constexpr double kPostRadius = 0.04;     ///< m: of a sign's post
 constexpr std::size_t kMostSegments = 128;
-constexpr std::size_t kGroups = 12;  ///< of neighbouring returns, in a segment that has more
+constexpr std::uint32_t kGroups = 12;  ///< of neighbouring returns, in a segment that has more
 
 struct State {
   double lateral = 0, depth = 0, radius = kRadiusPrior;
@@ -32,7 +32,6 @@ struct State {
 struct Normal {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();  ///< lower triangle
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
-  double residualSum = 0, weightSum = 0;
   void add(double lateral, double depth, double radius, double residual, double weight) {
     const double wl = weight * lateral, wd = weight * depth, wr = weight * radius;
     H(0, 0) += wl * lateral;
@@ -44,6 +43,14 @@ struct Normal {
     g[0] += wl * residual;
     g[1] += wd * residual;
     g[2] += wr * residual;
+  }
+  /// The same where the depth does not matter, and the others count by 1 or -1.
+  void addEdge(double side, double residual, double weight) {
+    H(0, 0) += weight;
+    H(2, 0) += weight * side;
+    H(2, 2) += weight;
+    g[0] += weight * residual;
+    g[2] += weight * side * residual;
   }
 };
 
@@ -75,7 +82,9 @@ class CylinderProblem {
         // More than these add nothing to what the radius prior and the floor leave.
         m_stride((used.size() + kMostSegments - 1) / kMostSegments),
         m_firmHeight(view.firmHeight),
-        m_columnAngle(view.columnAngle) {
+        m_columnAngle(view.columnAngle),
+        m_edgeSigma(
+            std::sqrt(m_columnAngle * m_columnAngle / 12 + 0.16 * kFootprint * kFootprint)) {
     const ScanLineSegment& reference = segments[used[used.size() / 2]];
     m_bearing = 0.5 * (reference.azimuthBegin + reference.azimuthEnd);
     m_cos = std::cos(m_bearing);
@@ -130,12 +139,26 @@ class CylinderProblem {
     return s;
   }
 
-  Normal normal(const State& s) const {
+  /// \param r Becomes the residuals in this state.
+  Normal normal(const State& s, Residuals& r) const {
     Normal n;
     n.add(0, 0, 1, s.radius - kRadiusPrior, 1 / (kRadiusPriorSigma * kRadiusPriorSigma));
-    addRanges(s, n);
-    for (std::size_t i = 0; i < m_used.size(); i += m_stride) addEdges(m_segments[m_used[i]], s, n);
+    evaluate(m_points, s, r);
+    addRanges(r, n);
+    const double sigma = std::max(0.004, s.depth * m_edgeSigma);
+    for (std::size_t i = 0; i < m_used.size(); i += m_stride)
+      addEdges(m_segments[m_used[i]], s, sigma * sigma, n);
     return n;
+  }
+
+  /// Robust standard deviation of the ranges.
+  double deviation(const Residuals& r) const {
+    double residualSum = 0, weightSum = 0;
+    for (std::size_t k = 0; k < m_points.count; ++k) {
+      residualSum += r.weight[k] * r.residual[k] * r.residual[k];
+      weightSum += r.weight[k];
+    }
+    return std::sqrt(residualSum / std::max(1e-9, weightSum));
   }
 
  private:
@@ -155,28 +178,23 @@ class CylinderProblem {
     return d > M_PI ? d - 2 * M_PI : d < -M_PI ? d + 2 * M_PI : d;
   }
 
-  void addRanges(const State& s, Normal& n) const {
+  void addRanges(const Residuals& r, Normal& n) const {
     constexpr double kWeight = 1 / (kRangeSigma * kRangeSigma);
-    Residuals r;
-    evaluate(m_points, s, r);
-    for (std::size_t k = 0; k < m_points.count; ++k) {
+    for (std::size_t k = 0; k < m_points.count; ++k)
       n.add(r.slope[k], 1, -r.front[k], r.residual[k], r.weight[k] * kWeight);
-      n.residualSum += r.weight[k] * r.residual[k] * r.residual[k];
-      n.weightSum += r.weight[k];
-    }
   }
 
   /// Takes up the returns of a segment.
   void gather(const ScanLineSegment& segment) {
     const Return* row = m_lines.begin(segment.row);
     const std::size_t size = m_lines.size(segment.row);
-    const std::size_t groups = std::min<std::size_t>(segment.count, kGroups);
+    const std::uint32_t groups = std::min(segment.count, kGroups);
     const Shift lean = leanOf(segment);
-    for (std::size_t g = 0; g < groups; ++g) {
-      const std::size_t first = g * segment.count / groups, end = (g + 1) * segment.count / groups;
+    for (std::uint32_t g = 0, first = 0, end; g < groups; ++g, first = end) {
+      end = (g + 1) * segment.count / groups;
       float along = 0, across = 0;
-      for (std::size_t k = first; k < end; ++k) {
-        const std::size_t i = segment.first + k;
+      for (std::uint32_t k = first; k < end; ++k) {
+        const std::uint32_t i = segment.first + k;
         const Return& r = row[i < size ? i : i - size];
         // Sine and cosine to 1e-7 for half a radian; of all poles but those at arm's length.
         const float d = static_cast<float>(offset(r.azimuth)), q = d * d;
@@ -213,17 +231,15 @@ class CylinderProblem {
     }
   }
 
-  void addEdges(const ScanLineSegment& segment, const State& s, Normal& n) const {
+  void addEdges(const ScanLineSegment& segment, const State& s, double variance, Normal& n) const {
     const double half = 0.5 * (m_columnAngle - kFootprint);
-    const double sigma = std::max(0.004, s.depth * std::sqrt(m_columnAngle * m_columnAngle / 12 +
-                                                             0.16 * kFootprint * kFootprint));
-    const double weight = firmness(segment, m_firmHeight) / (sigma * sigma);
+    const double weight = firmness(segment, m_firmHeight) / variance;
     const Shift lean = leanOf(segment);
     const double lateral = s.lateral + lean.across, depth = s.depth + lean.along;
     if (segment.left == Side::free)
-      n.add(1, 0, 1, lateral + s.radius - depth * (offset(segment.azimuthEnd) + half), weight);
+      n.addEdge(1, lateral + s.radius - depth * (offset(segment.azimuthEnd) + half), weight);
     if (segment.right == Side::free)
-      n.add(1, 0, -1, lateral - s.radius - depth * (offset(segment.azimuthBegin) - half), weight);
+      n.addEdge(-1, lateral - s.radius - depth * (offset(segment.azimuthBegin) - half), weight);
   }
 
   const ScanLines& m_lines;
@@ -232,7 +248,9 @@ class CylinderProblem {
   std::size_t m_stride;  ///< of the segments used
   FitPoints m_points;
   float m_firmHeight;
-  double m_columnAngle, m_bearing, m_cos, m_sin;
+  double m_columnAngle;
+  double m_edgeSigma;  ///< of the bearing of an edge, rad
+  double m_bearing, m_cos, m_sin;
   double m_height;                   ///< of the fit, lidar frame, m
   double m_leanAlong, m_leanAcross;  ///< of an upright pole, m per m of height
 };
@@ -329,8 +347,9 @@ std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLin
   const CylinderProblem problem(lines, segments, used, view, tilt.height);
   State s = problem.initial();
   Normal n;
+  Residuals residuals;
   for (int i = 0; i < kIterations; ++i) {
-    n = problem.normal(s);
+    n = problem.normal(s, residuals);
     n.H.triangularView<Eigen::StrictlyUpper>() = n.H.transpose();
     const Eigen::Vector3d step = n.H.inverse() * n.g;
     if (!step.allFinite()) return std::nullopt;
@@ -345,7 +364,7 @@ std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLin
   fit.x = static_cast<float>(s.depth * c - s.lateral * sn);
   fit.y = static_cast<float>(s.depth * sn + s.lateral * c);
   fit.radius = static_cast<float>(s.radius);
-  fit.residual = static_cast<float>(std::sqrt(n.residualSum / std::max(1e-9, n.weightSum)));
+  fit.residual = static_cast<float>(problem.deviation(residuals));
   Eigen::Matrix2d turn;
   turn << -sn, c, c, sn;  // columns: lateral and depth axes in the lidar frame
   const Eigen::Matrix2d local =
