@@ -179,10 +179,14 @@ CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sen
                                   const GroundGrid& ground,
                                   const std::vector<ScanLineSegment>& segments,
                                   const SegmentCluster& cluster, const ClusterShape& shape,
-                                  const PoleAxis& axis) {
+                                  const PoleAxis& axis, double minTop) {
   const Place place(lines, sensor, axis);
   const float groundZ = ground.at(axis.x, axis.y);
   CandidateFeatures e;
+  e.bottom = shape.low - groundZ;
+  e.top = shape.high - groundZ;
+  topFeatures(place, segments[cluster.top()].row, groundZ, e);
+  if (e.highestTop() < minTop) return e;
   int expected = segments[cluster.top()].row;
   for (auto i : cluster) {
     for (; expected < segments[i].row; ++expected) {
@@ -193,9 +197,6 @@ CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sen
     }
     ++expected;
   }
-  e.bottom = shape.low - groundZ;
-  e.top = shape.high - groundZ;
-  topFeatures(place, segments[cluster.top()].row, groundZ, e);
   return e;
 }
 

@@ -3,6 +3,9 @@
 /// \brief What the scan says for and against a candidate: rows that hit it, pass through, stand in
 /// the way.
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/extraction/scan_line/GroundGrid.h"
 #include "core/extraction/scan_line/PoleFitting.h"
 #include "core/extraction/scan_line/SegmentClustering.h"
@@ -31,12 +34,18 @@ struct CandidateFeatures {
   float bottom = 0;    ///< lowest segment
   float top = 0;       ///< highest return, whatever stands on it (sign, crown) included
   float topBound = 0;  ///< height of the lowest beam that passed over it; infinity when none did
+  /// \brief How high the top may be, as it lies between the highest return and that beam.
+  double highestTop() const {
+    const double between = std::isfinite(topBound) ? 0.5 * (top + topBound) : 1e9;
+    return std::max<double>(between, top);
+  }
 };
+/// \param minTop m: where the top is lower for certain, the rows below are not looked at.
 CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sensor,
                                   const GroundGrid& ground,
                                   const std::vector<ScanLineSegment>& segments,
                                   const SegmentCluster& cluster, const ClusterShape& shape,
-                                  const PoleAxis& axis);
+                                  const PoleAxis& axis, double minTop = -1e3);
 
 /// \brief Share of the cluster's rows with other returns in a ring around the place, 0.15 to 0.55 m
 /// outside the radius: free space, as a score.

@@ -134,12 +134,9 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
   selectForFit(cluster);
   const float column = static_cast<float>(m_sensor.columnAngle());
   const PoleAxis axis = roughAxis(m_segments, m_fitSegments, column, m_upright);
-  const CandidateFeatures candidate =
-      computeFeatures(m_lines, m_sensor, m_ground, m_segments, cluster, shape, axis);
-  // The top lies between the highest return and the first beam that passed over it.
-  const double top =
-      std::isfinite(candidate.topBound) ? 0.5 * (candidate.top + candidate.topBound) : 1e9;
-  if (std::max<double>(top, candidate.top) < m_options.minTop) return RejectionReason::tooLow;
+  const CandidateFeatures candidate = computeFeatures(m_lines, m_sensor, m_ground, m_segments,
+                                                      cluster, shape, axis, m_options.minTop);
+  if (candidate.highestTop() < m_options.minTop) return RejectionReason::tooLow;
   PoleFeatures features = describe(cluster, shape, candidate, axis);
   const bool hopeless = roughOdds(features) < kHopelessOdds;
   if (hopeless && !m_recorded) return RejectionReason::lowConfidence;
