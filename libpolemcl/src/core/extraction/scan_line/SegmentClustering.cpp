@@ -10,7 +10,7 @@ namespace {
 constexpr float kFree = std::numeric_limits<float>::infinity();
 
 constexpr TipBlock emptyBlock() {
-  return {{}, {}, {kFree, kFree, kFree, kFree}, {}, {}, 0, 0};
+  return {{}, {}, {kFree, kFree, kFree, kFree}, {}, {kNoCluster}, 0, 0};
 }
 
 }  // namespace
@@ -35,13 +35,33 @@ std::uint32_t SegmentClustering::cell(float x, float y) const {
          static_cast<std::uint32_t>(static_cast<std::int32_t>(x));
 }
 
-std::uint32_t SegmentClustering::nearest(const ScanLineSegment& segment, float gap,
-                                         NearestTip nearestTip) const {
-  const std::uint32_t corner = cell(segment.x * m_cellsPerMetre + m_middle - 0.5f,
-                                    segment.y * m_cellsPerMetre + m_middle - 0.5f);
-  const std::uint32_t* lower = &m_block[corner];
-  return nearestTip(m_blocks.data(), lower, lower + m_cells,
-                    {segment.x, segment.y, segment.z, segment.row, gap, m_reach * m_reach});
+/// Finds the nearest tip above each of some segments of one row.
+void SegmentClustering::findTips(const ScanLineSegment* segments, std::size_t count) {
+  m_queries.resize(count);
+  m_found.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ScanLineSegment& s = segments[i];
+    m_queries[i] = {
+        s.x,
+        s.y,
+        s.z,
+        s.row,
+        std::max(m_beamGap[s.row] * s.rho, m_gap),
+        cell(s.x * m_cellsPerMetre + m_middle - 0.5f, s.y * m_cellsPerMetre + m_middle - 0.5f)};
+  }
+  findNearestTips(grid(), m_queries.data(), count, m_found.data());
+}
+
+TipGrid SegmentClustering::grid() const {
+  return {m_blocks.data(), m_block.data(), m_cells, m_reach * m_reach};
+}
+
+/// Whether a tip that was found is no longer there, as another segment of the row has joined it or
+/// taken its slot.
+bool SegmentClustering::isGone(std::uint32_t cluster, std::int32_t row) const {
+  const Growing& growing = m_growing[cluster];
+  const TipBlock& tips = m_blocks[growing.block];
+  return tips.row[growing.slot] == row || tips.cluster[growing.slot] != cluster;
 }
 
 std::uint32_t SegmentClustering::freeBlock(std::uint32_t cell) {
@@ -93,26 +113,37 @@ void SegmentClustering::moveTip(std::uint32_t cluster, const ScanLineSegment& se
   tips.row[slot] = segment.row;
 }
 
+void SegmentClustering::add(std::uint32_t i, const ScanLineSegment& segment, float gap,
+                            std::uint32_t cluster) {
+  if (cluster == kNoCluster) {
+    m_growing.push_back({i, i, 1, 0, 0});
+    enter(static_cast<std::uint32_t>(m_growing.size()) - 1, segment, gap);
+  } else {
+    m_below[m_growing[cluster].last] = i;
+    m_growing[cluster].last = i;
+    ++m_growing[cluster].count;
+    moveTip(cluster, segment, gap);
+  }
+}
+
 const std::vector<SegmentCluster>& SegmentClustering::cluster(
     const std::vector<ScanLineSegment>& segments) {
-  const NearestTip nearestTip = polemcl::nearestTip();
   m_growing.clear();
   std::fill(m_block.begin(), m_block.end(), 0u);
   m_blocks.clear();
   m_blocks.push_back(emptyBlock());
   m_below.assign(segments.size(), kNone);
-  for (std::uint32_t i = 0; i < segments.size(); ++i) {
-    const ScanLineSegment& segment = segments[i];
-    const float gap = std::max(m_beamGap[segment.row] * segment.rho, m_gap);
-    const std::uint32_t c = nearest(segment, gap, nearestTip);
-    if (c == kNoCluster) {
-      m_growing.push_back({i, i, 1, 0, 0});
-      enter(static_cast<std::uint32_t>(m_growing.size()) - 1, segment, gap);
-    } else {
-      m_below[m_growing[c].last] = i;
-      m_growing[c].last = i;
-      ++m_growing[c].count;
-      moveTip(c, segment, gap);
+  for (std::size_t i = 0, end; i < segments.size(); i = end) {
+    end = i;
+    while (end < segments.size() && segments[end].row == segments[i].row) ++end;
+    // Segments of a row do not join one another, so all can look first.
+    findTips(&segments[i], end - i);
+    for (std::size_t k = i; k < end; ++k) {
+      const TipQuery& query = m_queries[k - i];
+      std::uint32_t& found = m_found[k - i];
+      if (found != kNoCluster && isGone(found, query.row))
+        findNearestTips(grid(), &query, 1, &found);
+      add(static_cast<std::uint32_t>(k), segments[k], query.gap, found);
     }
   }
   collect();

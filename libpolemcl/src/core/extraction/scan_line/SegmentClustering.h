@@ -41,15 +41,20 @@ class SegmentClustering {
     std::uint32_t block, slot;
   };
   std::uint32_t cell(float x, float y) const;
-  std::uint32_t nearest(const ScanLineSegment& segment, float gap, NearestTip nearestTip) const;
+  void findTips(const ScanLineSegment* segments, std::size_t count);
+  TipGrid grid() const;
+  bool isGone(std::uint32_t cluster, std::int32_t row) const;
+  void add(std::uint32_t i, const ScanLineSegment& segment, float gap, std::uint32_t cluster);
   void enter(std::uint32_t cluster, const ScanLineSegment& segment, float gap);
   void moveTip(std::uint32_t cluster, const ScanLineSegment& segment, float gap);
   std::uint32_t freeBlock(std::uint32_t cell);
   void collect();
 
   float m_reach, m_gap, m_cellsPerMetre, m_middle;
-  std::uint32_t m_cells;         ///< of the square grid, per side
-  std::vector<float> m_beamGap;  ///< per row: two beams apart, as a share of range
+  std::uint32_t m_cells;               ///< of the square grid, per side
+  std::vector<float> m_beamGap;        ///< per row: two beams apart, as a share of range
+  std::vector<TipQuery> m_queries;     ///< of the segments of one row
+  std::vector<std::uint32_t> m_found;  ///< the cluster of each query
   std::vector<Growing> m_growing;
   std::vector<TipBlock> m_blocks;      ///< number 0 stays empty
   std::vector<std::uint32_t> m_block;  ///< per cell of the plane: its first block, or 0

@@ -36,37 +36,43 @@ HWY_INLINE TipVector distances(const TipBlock& tips, int from, const TipQuery& q
                         hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
 }
 
-std::uint32_t nearestTipKernel(const TipBlock* blocks, const std::uint32_t* lower,
-                               const std::uint32_t* upper, const TipQuery& query) {
+/// No branch depends on whether there is a tip, which could not be foreseen.
+HWY_INLINE std::uint32_t nearestTip(const TipGrid& grid, const TipQuery& query) {
   const Tips d;
   constexpr int kLanes = static_cast<int>(hn::MaxLanes(Tips()));
-  constexpr int kVectors = 4 * TipBlock::kSlots / kLanes;
-  std::uint32_t at[4] = {lower[0], lower[1], upper[0], upper[1]};
-  if ((at[0] | at[1] | at[2] | at[3]) == 0) return kNoCluster;
+  constexpr int kAll = 4 * TipBlock::kSlots, kVectors = kAll / kLanes;
+  const std::uint32_t *lower = grid.first + query.corner, *upper = lower + grid.cells;
+  std::uint32_t at[5] = {lower[0], lower[1], upper[0], upper[1], 0};
   std::uint32_t best = kNoCluster;
-  float reach = query.squaredReach;
+  float reach = grid.squaredReach;
   do {
     TipVector found[kVectors];
     for (int i = 0; i < kVectors; ++i)
-      found[i] = distances(blocks[at[i * kLanes / TipBlock::kSlots]], i * kLanes % TipBlock::kSlots,
-                           query);
+      found[i] = distances(grid.blocks[at[i * kLanes / TipBlock::kSlots]],
+                           i * kLanes % TipBlock::kSlots, query);
     TipVector least = found[0];
     for (int i = 1; i < kVectors; ++i) least = hn::Min(least, found[i]);
-    const float nearest = hn::GetLane(hn::MinOfLanes(d, least));
-    if (nearest <= reach) {
-      if (nearest < reach) best = kNoCluster;
-      reach = nearest;
-      std::uint32_t bits = 0;
-      for (int i = 0; i < kVectors; ++i)
-        bits |= maskBits(d, hn::Eq(found[i], hn::Set(d, nearest))) << (i * kLanes);
-      for (; bits != 0; bits &= bits - 1) {
-        const auto tip = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
-        best = std::min(best, blocks[at[tip / TipBlock::kSlots]].cluster[tip % TipBlock::kSlots]);
-      }
-    }
-    for (std::uint32_t& block : at) block = blocks[block].next;
+    const TipVector all = hn::MinOfLanes(d, least);
+    const float nearest = hn::GetLane(all);
+    std::uint32_t bits = 0;
+    for (int i = 0; i < kVectors; ++i) bits |= maskBits(d, hn::Eq(found[i], all)) << (i * kLanes);
+    bits &= nearest <= reach ? ~0u : 0u;
+    best = nearest < reach ? kNoCluster : best;
+    do {
+      const auto tip = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits | 1u << kAll);  // the last is empty
+      best =
+          std::min(best, grid.blocks[at[tip / TipBlock::kSlots]].cluster[tip % TipBlock::kSlots]);
+      bits &= bits - 1;
+    } while (bits != 0);
+    reach = std::min(reach, nearest);
+    for (std::uint32_t& block : at) block = grid.blocks[block].next;
   } while ((at[0] | at[1] | at[2] | at[3]) != 0);
   return best;
+}
+
+void findNearestTips(const TipGrid& grid, const TipQuery* queries, std::size_t count,
+                     std::uint32_t* clusters) {
+  for (std::size_t i = 0; i < count; ++i) clusters[i] = nearestTip(grid, queries[i]);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -75,10 +81,11 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace polemcl {
-HWY_EXPORT(nearestTipKernel);
+HWY_EXPORT(findNearestTips);
 
-NearestTip nearestTip() {
-  return HWY_DYNAMIC_DISPATCH(nearestTipKernel);
+void findNearestTips(const TipGrid& grid, const TipQuery* queries, std::size_t count,
+                     std::uint32_t* clusters) {
+  HWY_DYNAMIC_DISPATCH(findNearestTips)(grid, queries, count, clusters);
 }
 }  // namespace polemcl
 #endif

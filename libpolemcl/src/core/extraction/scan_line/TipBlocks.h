@@ -2,6 +2,7 @@
 /// \file TipBlocks.h
 /// \brief The lower ends of growing clusters, compared several at once. Private to the library.
 
+#include <cstddef>
 #include <cstdint>
 
 namespace polemcl {
@@ -19,19 +20,23 @@ struct TipBlock {
 struct TipQuery {
   float x, y, z;  ///< m
   std::int32_t row;
-  float gap;           ///< greatest height of the tip above it, m
-  float squaredReach;  ///< greatest squared distance in the plane, m²
+  float gap;             ///< greatest height of the tip above it, m
+  std::uint32_t corner;  ///< of the four cells that are searched: the one of least x and y
 };
 
 constexpr std::uint32_t kNoCluster = ~0u;
 
-/// \brief The cluster with the nearest tip in four cells, from another row and within reach; of two
-/// tips at the same distance the one of the lower number. kNoCluster: none.
-/// \param blocks Number 0 is empty.
-/// \param lower,upper First blocks of two neighbouring cells each; 0: none.
-using NearestTip = std::uint32_t (*)(const TipBlock* blocks, const std::uint32_t* lower,
-                                     const std::uint32_t* upper, const TipQuery& query);
-/// \brief The function for this processor's instructions; all give the same result.
-NearestTip nearestTip();
+/// \brief Tips by the cells of a square grid.
+struct TipGrid {
+  const TipBlock* blocks;      ///< number 0 is empty, and of kNoCluster
+  const std::uint32_t* first;  ///< per cell: its first block; 0: none
+  std::uint32_t cells;         ///< per side
+  float squaredReach;          ///< greatest squared distance in the plane, m²
+};
+
+/// \brief For each query the cluster with the nearest tip in four cells, from another row and
+/// within reach; of two tips at the same distance the one of the lower number. kNoCluster: none.
+void findNearestTips(const TipGrid& grid, const TipQuery* queries, std::size_t count,
+                     std::uint32_t* clusters);
 
 }  // namespace polemcl
