@@ -54,14 +54,14 @@ class Place {
 
   /// True when a row has returns in the ring around the place.
   bool cluttered(int row) const {
-    bool found = false;
+    int found = 0;
     const float inner = m_axis.radius + kRingInner, outer = m_axis.radius + kRingOuter;
     const Spot at = spotOf(row);
     around(row, at, outer, [&](const Return& r) {
       const float d = squaredDistance(r, at);
-      found |= d > inner * inner && d < outer * outer;
+      found |= static_cast<int>(d > inner * inner) & static_cast<int>(d < outer * outer);
     });
-    return found;
+    return found != 0;
   }
 
  private:

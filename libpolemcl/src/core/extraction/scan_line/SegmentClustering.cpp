@@ -116,7 +116,9 @@ void SegmentClustering::moveTip(std::uint32_t cluster, const ScanLineSegment& se
 void SegmentClustering::add(std::uint32_t i, const ScanLineSegment& segment, float gap,
                             std::uint32_t cluster) {
   if (cluster == kNoCluster) {
-    m_growing.push_back({i, i, 1, 0, 0});
+    Growing& growing = m_growing.emplace_back();
+    growing.first = growing.last = i;
+    growing.count = 1;
     enter(static_cast<std::uint32_t>(m_growing.size()) - 1, segment, gap);
   } else {
     m_below[m_growing[cluster].last] = i;
@@ -157,7 +159,9 @@ void SegmentClustering::collect() {
   m_members.reserve(m_below.size());  // so that the clusters' pointers stay good
   for (const Growing& chain : m_growing) {
     if (chain.count < 2) continue;
-    m_clusters.push_back({m_members.data() + m_members.size(), chain.count});
+    SegmentCluster& cluster = m_clusters.emplace_back();
+    cluster.first = m_members.data() + m_members.size();
+    cluster.count = chain.count;
     for (std::uint32_t i = chain.first; i != kNone; i = m_below[i]) m_members.push_back(i);
   }
 }

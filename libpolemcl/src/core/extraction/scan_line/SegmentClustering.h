@@ -37,8 +37,8 @@ class SegmentClustering {
   static constexpr std::uint32_t kNone = ~0u;
   /// A growing cluster: its segments, and where its lower end, its tip, is kept.
   struct Growing {
-    std::uint32_t first, last, count;
-    std::uint32_t block, slot;
+    std::uint32_t first = 0, last = 0, count = 0;
+    std::uint32_t block = 0, slot = 0;
   };
   std::uint32_t cell(float x, float y) const;
   void findTips(const ScanLineSegment* segments, std::size_t count);
