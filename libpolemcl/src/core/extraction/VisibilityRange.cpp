@@ -119,17 +119,17 @@ VisibilityRangeFinder::Span VisibilityRangeFinder::spanAtPoleHeights(
 /// Counts the blocked steps of one beam in all sectors: it sees nothing beyond what it met.
 void VisibilityRangeFinder::countBlocked(const ScanLines& lines, const Beam& beam) {
   float nearest[kSectors];
-  std::fill(nearest, nearest + kSectors, std::numeric_limits<float>::infinity());
+  std::fill(nearest, nearest + kSectors, kStep * static_cast<float>(m_steps));
   for (const Return* r = lines.begin(beam.row); r < lines.end(beam.row); ++r) {
     float& least = nearest[ScanLines::part(r->azimuth, kSectors)];
     least = std::min(least, r->rho);
   }
   for (int sector = 0; sector < kSectors; ++sector) {
     const Span span = beam.span[sector];
-    if (!(nearest[sector] < kStep * static_cast<float>(span.last))) continue;
-    const int from = std::max<int>(span.first, static_cast<int>(nearest[sector] / kStep) + 1);
+    const int end = span.last + 1, beyond = static_cast<int>(nearest[sector] / kStep) + 1;
+    const int from = std::min(std::max<int>(span.first, beyond), end);  // end: none is blocked
     ++m_change[static_cast<std::size_t>(from) * kSectors + sector];
-    --m_change[static_cast<std::size_t>(span.last + 1) * kSectors + sector];
+    --m_change[static_cast<std::size_t>(end) * kSectors + sector];
   }
 }
 
