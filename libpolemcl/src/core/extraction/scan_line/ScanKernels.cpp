@@ -291,21 +291,24 @@ std::size_t findEdges(const Return* returns, std::size_t count, float step, floa
   // Before the first and behind the last return stands anything: its results are not used.
   const SideFinder<decltype(d)> side(step, gap, edge);
   std::size_t found = 0;
+  std::uint32_t breaks = 0;
   for (i = 0; i + 1 < count; i += lanes) {
     const auto load = [&](const float* from) { return hn::LoadU(d, from); };
     const float *a = out.azimuth + i, *r = out.rho + i;
     const auto azimuth = load(a), rho = load(r), azimuth1 = load(a + 1), rho1 = load(r + 1);
-    const auto left = side(azimuth, rho, azimuth1, rho1, load(a + 2), load(r + 2));
-    const auto right = side(azimuth, rho, load(a - 1), load(r - 1), load(a - 2), load(r - 2));
-    hn::StoreU(hn::Add(left, hn::ShiftLeft<2>(right)), di, out.sides + i);
     const auto turn = hn::Sub(azimuth1, azimuth);
     const auto near = hn::Lt(hn::Abs(hn::Sub(rho1, rho)), hn::Set(d, step));
     const auto bridged =
         hn::And(hn::Lt(turn, hn::Set(d, 2 * gap)), hn::Lt(hn::Mul(turn, rho), hn::Set(d, kBridge)));
     const auto same = hn::And(near, hn::Or(hn::Lt(turn, hn::Set(d, gap)), bridged));
-    std::uint32_t bits = maskBits(d, hn::Not(same));
-    if (count - 1 - i < lanes) bits &= (1u << (count - 1 - i)) - 1;
-    found += appendSet(bits, static_cast<std::uint32_t>(i), out.breaks + found);
+    const bool brokenBefore = (breaks >> (lanes - 1) & 1) != 0;
+    breaks = maskBits(d, hn::Not(same));
+    if (breaks == 0 && !brokenBefore) continue;
+    const auto left = side(azimuth, rho, azimuth1, rho1, load(a + 2), load(r + 2));
+    const auto right = side(azimuth, rho, load(a - 1), load(r - 1), load(a - 2), load(r - 2));
+    hn::StoreU(hn::Add(left, hn::ShiftLeft<2>(right)), di, out.sides + i);
+    if (count - 1 - i < lanes) breaks &= (1u << (count - 1 - i)) - 1;
+    found += appendSet(breaks, static_cast<std::uint32_t>(i), out.breaks + found);
   }
   return found;
 }

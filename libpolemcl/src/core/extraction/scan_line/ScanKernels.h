@@ -59,8 +59,8 @@ inline bool joined(const Return& a, const Return& b, float turn, float step, flo
 /// \brief Where runs of neighbours in a row end, and what lies beside each return.
 struct RowEdges {
   float *azimuth, *rho;  ///< buffers; two numbers before the first can be read
-  /// Out, per return: Side::… to the left, and to the right times 4, if the run ended there. Not of
-  /// the first and last two, whose neighbours may be across the seam.
+  /// Out, per return at a break or behind one: Side::… to the left, and to the right times 4, if
+  /// the run ended there. Not of the first and last two, whose neighbours may be across the seam.
   std::int32_t* sides;
   /// Out, ascending: positions i in [0, count - 1) where returns i and i + 1 are not joined().
   std::uint32_t* breaks;
