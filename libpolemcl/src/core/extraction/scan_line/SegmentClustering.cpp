@@ -9,9 +9,7 @@ namespace {
 
 constexpr float kFree = std::numeric_limits<float>::infinity();
 
-constexpr TipBlock emptyBlock() {
-  return {{}, {}, {kFree, kFree, kFree, kFree}, {}, {kNoCluster}, 0, 0};
-}
+constexpr TipBlock kEmptyBlock = {{}, {}, {kFree, kFree, kFree, kFree}, {}, {kNoCluster}, 0, 0};
 
 }  // namespace
 
@@ -65,7 +63,7 @@ bool SegmentClustering::isGone(std::uint32_t cluster, std::int32_t row) const {
 }
 
 std::uint32_t SegmentClustering::freeBlock(std::uint32_t cell) {
-  m_blocks.push_back(emptyBlock());
+  m_blocks.push_back(kEmptyBlock);
   m_blocks.back().cell = cell;
   m_blocks.back().next = m_block[cell];
   return m_block[cell] = static_cast<std::uint32_t>(m_blocks.size()) - 1;
@@ -133,7 +131,7 @@ const std::vector<SegmentCluster>& SegmentClustering::cluster(
   m_growing.clear();
   std::fill(m_block.begin(), m_block.end(), 0u);
   m_blocks.clear();
-  m_blocks.push_back(emptyBlock());
+  m_blocks.push_back(kEmptyBlock);
   m_below.assign(segments.size(), kNone);
   for (std::size_t i = 0, end; i < segments.size(); i = end) {
     end = i;
