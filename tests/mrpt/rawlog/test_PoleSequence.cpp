@@ -2,6 +2,7 @@
 #include <mrpt/obs/CObservation2DRangeScan.h>
 
 #include <cmath>
+#include <numeric>
 #include <thread>
 
 #include "support/ExpectHas.h"
@@ -479,8 +480,7 @@ TEST_F(PoleSequenceTest, ReportsProgress) {
 TEST_F(PoleSequenceTest, ExpectsAsManyScansAsTheFileIsLong) {
   CObservationPoles large = poles(1);
   large.visibilityRange.resize(20000);  // few are read ahead by bytes, but many by number
-  for (std::size_t i = 0; i < large.visibilityRange.size(); ++i)
-    large.visibilityRange[i] = static_cast<float>(i);
+  std::iota(large.visibilityRange.begin(), large.visibilityRange.end(), 0.f);
   const std::string one = samples::bytesOf(large);
   const std::size_t scans = 8'000'000 / one.size();
   std::string bytes;
