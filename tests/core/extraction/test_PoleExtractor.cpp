@@ -217,6 +217,28 @@ TEST(PoleExtractor, PointsThatComeTwiceAddNoPoles) {
   expectYard(extract(points, sensor));
 }
 
+// A LiDAR that sends two returns a firing: those behind neither cut nor double a pole.
+TEST(PoleExtractor, OfTwoReturnsOfAFiringTheNearerCounts) {
+  for (const auto& sensor : {sensorOptions("hdl32e"), sensorOptions("vlp16")}) {
+    const PointList once = castYard(sensor);
+    const auto expected = extract(once, sensor);
+    expectYard(expected);
+    PointList twice = once;
+    for (std::size_t i = 0; i < once.size(); ++i) {
+      const double range = std::hypot(std::hypot(once.x[i], once.y[i]), once.z[i]);
+      const double farther = i % 4 == 0 && once.z[i] > 0 ? 1 + 3 / range : 1;
+      twice.add(farther * once.x[i], farther * once.y[i], farther * once.z[i]);
+    }
+    const auto poles = extract(twice, sensor);
+    ASSERT_EQ(poles.size(), expected.size()) << sensor.model;
+    for (std::size_t i = 0; i < poles.size(); ++i) {
+      EXPECT_NEAR(poles[i].x, expected[i].x, 1e-6) << sensor.model;
+      EXPECT_NEAR(poles[i].y, expected[i].y, 1e-6) << sensor.model;
+      EXPECT_EQ(poles[i].points, expected[i].points) << sensor.model;
+    }
+  }
+}
+
 TEST(PoleExtractor, FromNothingComesNothing) {
   const SensorOptions sensor = sensorOptions("hdl32e");
   EXPECT_TRUE(extract(PointList(), sensor).empty());

@@ -68,6 +68,7 @@ bool sortSorted(Return* returns, std::size_t count, const Before& before) {
 ScanLines::ScanLines(const SensorModel& sensor)
     : m_sensor(sensor),
       m_rows(sensor.beamCount()),
+      m_oneFiring(static_cast<float>(0.05 * sensor.columnAngle())),
       m_streamBegin(2 * static_cast<std::size_t>(m_rows) + 1),
       m_streamEnd(m_streamBegin.size()),
       m_next(m_streamBegin.size()),
@@ -93,11 +94,15 @@ const ScanLines::Counts& ScanLines::build(const PointsView& points, const Ground
     classify();
   }
   m_counts.used = 0;
+  m_looked = m_twins = 0;
   for (int row = 0; row < m_rows; ++row) {
     joinHalves(row);
     index(row);
     m_counts.used += size(row);
   }
+  constexpr std::size_t kRare = 30;  // by chance, up to one in 50 lies beside another
+  if (kRare * m_twins > m_looked)
+    for (int row = 0; row < m_rows; ++row) keepNearer(row);
   m_counts.outOfView = m_next[streams] - m_streamBegin[streams];
   m_counts.onGround = points.size - ground.counts().invalid - ground.counts().outOfRange -
                       m_counts.used - m_counts.outOfView;
@@ -175,8 +180,26 @@ void ScanLines::index(int row) {
   for (std::uint32_t i = kStep; i < count; i += kStep) {
     const int next = part(returns[i].azimuth, kParts) + 1;
     if (next < kParts) hint[next] = i;
+    const Return& after = returns[std::min(i + 1, count - 1)];
+    m_twins += returns[i].azimuth - returns[i - 1].azimuth < m_oneFiring ||
+               (i + 1 < count && after.azimuth - returns[i].azimuth < m_oneFiring);
+    ++m_looked;
   }
   for (int p = 1; p < kParts; ++p) hint[p] = std::max(hint[p], hint[p - 1]);
+}
+
+/// Leaves the nearest return of each firing in a row.
+void ScanLines::keepNearer(int row) {
+  Return* const first = m_returns.data() + m_begin[row];
+  Return* last = first;  // of those that stay
+  for (const Return* r = first + 1; r < end(row); ++r) {
+    if (r->azimuth - last->azimuth >= m_oneFiring)
+      *++last = *r;
+    else if (r->rho < last->rho)
+      *last = *r;
+  }
+  if (first < end(row)) m_end[row] = m_begin[row] + static_cast<std::uint32_t>(last - first) + 1;
+  index(row);
 }
 
 std::size_t ScanLines::lowerBound(int row, float azimuth) const {

@@ -39,8 +39,9 @@ class ScanLines {
   /// \brief Sorts the points of one turn into rows. Keeps its buffers between calls.
   ///
   /// Most points of a street lie on the ground; poles stand on it, so they are left out first.
-  /// \param ground Built from the same points; those it dropped are dropped here, too.
-  /// \param clearance Points less than this above the ground are left out, m.
+  /// Where many firings have two returns, the nearer ones stay: those behind would cut poles in
+  /// two. \param ground Built from the same points; those it dropped are dropped here, too. \param
+  /// clearance Points less than this above the ground are left out, m.
   const Counts& build(const PointsView& points, const GroundGrid& ground, float clearance);
 
   int rows() const { return m_rows; }
@@ -68,10 +69,13 @@ class ScanLines {
   void sortMixed(Return* returns, std::size_t count);
   void joinHalves(int row);
   void index(int row);
+  void keepNearer(int row);
 
   const SensorModel& m_sensor;
   int m_rows;
+  float m_oneFiring;  ///< azimuths of one firing differ by less, rad
   Counts m_counts;
+  std::size_t m_looked = 0, m_twins = 0;  ///< returns that index() saw, those beside another one
   PointsView m_points;
   std::vector<Return> m_returns, m_sorted;
   /// Streams of ReturnStreams: first and last place, and where the next return would be.
