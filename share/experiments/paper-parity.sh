@@ -3,14 +3,15 @@
 # odd ones. Odometry is the true motion with 2 % noise; each seed draws odometry and filter anew; the
 # filter is updated at every scan, has 1000 particles, and starts uniformly in the radius and within
 # 5 deg. Prints a table: settings by poses and start disc, means over the seeds (least to greatest), and
-# the figures of the authors' program on kitti_raw_0005. pole-import adds 1 mm and 0.006 deg to the sigma
+# the figures of the authors' program on kitti_raw_0005. `our-poles`: map and filter of paper mode with our
+# poles; `paper-poles`: ours with the poles of paper mode, height corrected. pole-import adds 1 mm and 0.006 deg to the sigma
 # of the odometry, which costs that program 0.001 to 0.002 m.
 # Usage: share/experiments/paper-parity.sh DATA OUT [SEEDS]
 #   DATA   the folder of scans (kitti_raw_0005: velodyne/, times.txt, poses.txt and
 #          poses_scan_matching.txt)
 #   OUT    gets the maps, parity.csv (each seed), parity.json (the table) and table.md
 #   SEEDS  20 unless given
-# Programs: build/bin, or POLEMCL_BIN. 4 minutes on 2 cores.
+# Programs: build/bin, or POLEMCL_BIN. 5 minutes on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -43,20 +44,24 @@ folder_of() {
   echo "$folder"
 }
 
-# run NAME CONFIG OPTIONS POSES: a row of parity.csv per seed and radius.
+# run NAME CONFIG OPTIONS POSES [EXTRACTION]: a row of parity.csv per seed and radius. EXTRACTION: the
+# configuration that finds the poles, CONFIG unless given.
 run() {
   folder=$(folder_of "$4")
+  finds=${5:-$2}
   case $2 in kitti.ini) poses_options= ;; *) poses_options=$map_options ;; esac
   [ -f "$folder/even.rawlog" ] ||
     "$bin/pole-import" folder --quiet --input "$folder" --output "$folder/even.rawlog" --every 2
+  "$bin/pole-extract" --quiet --config "$top/config/$finds" --input "$folder/even.rawlog" \
+    --output "$folder/even_poles.rawlog"
   # shellcheck disable=SC2086 # options: several words
   "$bin/pole-map" build --quiet --config "$top/config/$2" $poses_options \
-    --input "$folder/even.rawlog" --truth "$folder/even.tum" --output "$folder/$1.polemap"
+    --input "$folder/even_poles.rawlog" --truth "$folder/even.tum" --output "$folder/$1.polemap"
   seed=1
   while [ "$seed" -le "$seeds" ]; do
     "$bin/pole-import" folder --quiet --input "$folder" --output "$folder/odd.rawlog" --every 2 \
       --offset 1 --odometry-noise 0.02 --seed "$seed"
-    "$bin/pole-extract" --quiet --config "$top/config/$2" --input "$folder/odd.rawlog" \
+    "$bin/pole-extract" --quiet --config "$top/config/$finds" --input "$folder/odd.rawlog" \
       --output "$folder/poles.rawlog"
     for radius in 2.5 0.5; do
       # shellcheck disable=SC2086
@@ -77,6 +82,8 @@ for poses in poses_scan_matching.txt poses.txt; do
   run paper paper/kitti.ini "$paper_options" $poses
   run paper-mended paper/kitti-mended.ini "$paper_options" $poses
   run ours kitti.ini "" $poses
+  run our-poles paper/kitti.ini "$paper_options" $poses kitti.ini
+  run paper-poles kitti.ini "" $poses paper/kitti-mended.ini
 done
 
 # Ten seeds of the authors' program on its own detections; see the README of the data.

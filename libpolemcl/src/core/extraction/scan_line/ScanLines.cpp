@@ -191,14 +191,18 @@ void ScanLines::index(int row) {
 /// Leaves the nearest return of each firing in a row.
 void ScanLines::keepNearer(int row) {
   Return* const first = m_returns.data() + m_begin[row];
+  if (first == end(row)) return;
   Return* last = first;  // of those that stay
+  float begin = first->azimuth;
   for (const Return* r = first + 1; r < end(row); ++r) {
-    if (r->azimuth - last->azimuth >= m_oneFiring)
+    if (r->azimuth - begin >= m_oneFiring) {
       *++last = *r;
-    else if (r->rho < last->rho)
+      begin = r->azimuth;
+    } else if (r->rho < last->rho) {
       *last = *r;
+    }
   }
-  if (first < end(row)) m_end[row] = m_begin[row] + static_cast<std::uint32_t>(last - first) + 1;
+  m_end[row] = m_begin[row] + static_cast<std::uint32_t>(last - first) + 1;
   index(row);
 }
 
