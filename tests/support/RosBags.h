@@ -66,13 +66,17 @@ struct TestOdometry {
   double time = 0, x = 0, y = 0, yaw = 0;
   std::array<double, 3> variances{0.04, 0.01, 0.0025};  ///< (vx, vy, yaw rate)
   std::string child = "base_link", frame = "odom";
-  double speed = 0;  ///< each of the six velocities
+  double speed = 0;   ///< each of the six velocities
+  bool down = false;  ///< the z axis of the child points down; yaw is 0 then
 };
 
 inline std::string odometryMessage(const TestOdometry& odometry, bool bigEndian = false) {
   CdrWriter writer(bigEndian);
   writer.header(odometry.time, odometry.frame).text(odometry.child);
-  writer.pose(odometry.x, odometry.y, 0, odometry.yaw).zeros(36);
+  if (odometry.down)
+    writer.put(odometry.x).put(odometry.y).put(0.0).put(1.0).zeros(3).zeros(36);
+  else
+    writer.pose(odometry.x, odometry.y, 0, odometry.yaw).zeros(36);
   for (int i = 0; i < 6; ++i) writer.put(odometry.speed);
   for (int row = 0; row < 6; ++row)
     for (int column = 0; column < 6; ++column) {

@@ -132,6 +132,17 @@ TEST_F(Rosbag2Test, MessagesWithoutAPoseAreLeftOut) {
   expectNote(folder, "static transforms that are no rotation are left out: base_link to camera");
 }
 
+TEST_F(Rosbag2Test, RefusesARobotWhoseZPointsDown) {
+  bag->add(clouds, 0, cloudAt(0.1));
+  for (const double time : {0.0, 0.2}) {
+    TestOdometry motion;
+    motion.time = time;
+    motion.down = true;
+    bag->add(odometry, 0, odometryAt(motion));
+  }
+  expectIn(refusal(), "/odom: its z axis points down; a frame with x ahead and z up is expected");
+}
+
 TEST_F(Rosbag2Test, OdometryThatIsNotReadMayBeAnything) {
   writeDrive(3, {});
   bag->add(transforms, 0, transformsMessage({{"base_link", "lidar", 1, 0, 2, 0}}));

@@ -178,8 +178,8 @@ void addRosbagMotions(const Bag& bag, std::size_t odometryTopic,
   const MeasuredTrack odometry = readOdometry(bag, odometryTopic, times, child);
   noteTrack(bag.topics()[odometryTopic], odometry, folder.notes);
   requireOverlap(folder, odometry.poses, bag.path(), "odometry");
-  requireVehicleFrame(odometry.poses,
-                      bag.path().string() + ": " + bag.topics()[odometryTopic].name);
+  requireVehicleFrame(odometry.poses, bag.path().string() + ": " + bag.topics()[odometryTopic].name,
+                      true);
   std::optional<MeasuredTrack> imu;
   if (imuTopic) {
     imu = readImu(bag, *imuTopic, times, child, frames, folder.notes);

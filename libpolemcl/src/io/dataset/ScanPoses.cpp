@@ -84,7 +84,7 @@ void requireOverlap(const ScanFolder& folder, const TrackSampler& track, const f
               "; take the files of one session, stamped by one clock");
 }
 
-void requireVehicleFrame(const TrackSampler& track, const std::string& where) {
+void requireVehicleFrame(const TrackSampler& track, const std::string& where, bool isLevel) {
   double alongZ = 0, level = 0;
   std::size_t down = 0;
   const Eigen::Isometry3d* last = nullptr;
@@ -102,7 +102,7 @@ void requireVehicleFrame(const TrackSampler& track, const std::string& where) {
   if (alongZ > kShort && alongZ > level)
     throw Error(where + ": it moves " + fixed(alongZ, 1) + " m along z and " + fixed(level, 1) +
                 " m in x and y, as a camera does; a frame with x ahead and z up is expected");
-  if (2 * down > track.found())
+  if (isLevel && 2 * down > track.found())
     throw Error(where + ": its z axis points down; a frame with x ahead and z up is expected");
 }
 
@@ -126,7 +126,7 @@ void takeTumMotions(ScanFolder& folder, const fs::path& file,
                     const Eigen::Isometry3d& T_pose_robot) {
   const TrackSampler track = sampled(folder, file, T_pose_robot);
   requireOverlap(folder, track, file, "odometry");
-  requireVehicleFrame(track, file.string());
+  requireVehicleFrame(track, file.string(), false);
   std::vector<bool> keep;
   const Eigen::Isometry3d* last = nullptr;
   for (std::size_t i = 0; i < folder.scans.size(); ++i) {
