@@ -32,12 +32,10 @@ void keepScans(ScanFolder& folder, const std::vector<bool>& keep, const std::str
 void requireOverlap(const ScanFolder& folder, const TrackSampler& track,
                     const std::filesystem::path& file, const std::string& what);
 
-/// \param where Prefix of the message. \param isLevel Whether the frame of the odometry has z up,
-/// so
-///        that its poses tell which axis of the robot points up.
+/// \param where Prefix of the message. \param isLevel Whether the odometry's frame has z up: then
+///        its poses tell which axis of the robot points up.
 /// \throws Error when the odometry moves along its z axis more than in x and y, as a camera does,
-/// or
-///         its z axis points down.
+///         or its z axis points down.
 void requireVehicleFrame(const TrackSampler& track, const std::string& where, bool isLevel);
 
 /// \brief Gives the scans the poses of a sampled track. Scans without a pose are dropped.
