@@ -15,21 +15,17 @@ enum class ExtractionMethod { rangeImage, scanLine };
 
 /// \brief Where the paper's text and its authors' code differ, in five details.
 enum class ExtractionDetails {
-  /// Points outside the image are dropped, and it closes at ±180°. Pixels of the foreground are
-  /// those without a nearer side neighbour outside the cluster. Algebraic fit (Kåsa). The free
-  /// space
-  /// is four squares at the corners of the box of the fit.
+  /// Points outside the image are dropped, and it closes at ±180°. Pixels of the foreground have
+  /// no nearer side neighbour outside the cluster. Algebraic fit (Kåsa). The free space is four
+  /// squares at the corners of the box of the fit.
   mended,
-  /// As the text: as above, but pixels of the foreground need side neighbours outside the cluster,
-  /// all farther. The free space is what is nearer than its width to the circle around the box of
-  /// the fit.
+  /// As the text: as above, but all side neighbours outside the cluster must be farther, and there
+  /// must be some. The free space is what is nearer than its width to the circle around that box.
   paper,
   /// As the code: points outside the image go to its border pixels. The image is open, and its
-  /// first
-  /// and last rows and columns hold no pixels of clusters. The radius is the mean distance to the
-  /// centre of the fit. The two squares at lower y are cut to the height `ring - 2 (R + margin)` by
-  /// a
-  /// sign slip.
+  /// first and last rows and columns hold no pixels of clusters. The radius is the mean distance
+  /// to the centre of the fit. The two squares at lower y are cut to the height
+  /// `ring - 2 (R + margin)` by a sign slip.
   authors
 };
 
