@@ -117,7 +117,7 @@ TEST(PoleExtractor, PolesBeyondTheRangeAreNotLookedFor) {
   EXPECT_EQ(extract(castYard(sensor), sensor, options).size(), 3u);
 }
 
-// Of what is farther than the LiDAR's own greatest range nothing is known.
+// Nothing is known beyond the LiDAR's own greatest range.
 TEST(PoleExtractor, TheSensorsGreatestRangeEndsWhatIsVisible) {
   SensorOptions sensor = sensorOptions("hdl32e");
   sensor.maxRange = 12;

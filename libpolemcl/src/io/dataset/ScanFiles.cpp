@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether the numbers in the names are in another order than their letters.
+/// Compares names by the numbers in them: 9 is before 10.
 bool isBefore(const fs::path& file, const fs::path& other) {
   const std::string name = file.stem().string(), otherName = other.stem().string();
   const auto number = parseNumber(name), otherNumber = parseNumber(otherName);
@@ -34,8 +34,7 @@ void requirePaddedNames(const std::vector<fs::path>& files) {
 
 constexpr std::size_t kBytesOfFive = 20;  ///< five float32
 
-/// Whether every fifth number of a file is a whole one, as the number of a ring, and others are
-/// not.
+/// Whether every fifth number of a file is whole, as the number of a ring is, and others are not.
 bool hasRings(const fs::path& scan) {
   const std::string bytes = readBytes(scan);
   const auto isWhole = [&](std::size_t at) {

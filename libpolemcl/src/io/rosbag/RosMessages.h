@@ -59,10 +59,10 @@ struct RosNavSatFix {
 };
 
 /// \brief Decode the message. \param where Prefix of error messages.
-/// A pose is none if a number is not finite, or its quaternion not of unit length (1 % off at
-/// most). \throws Error when it is cut short, another number is not finite, or nanoseconds are a
-/// second or
-///         more.
+/// There is no pose if one of its numbers is not finite, or its quaternion is not of unit length
+/// (1 % off at most).
+/// \throws Error when the message is cut short, another number is not finite, or nanoseconds are a
+///         second or more.
 RosHeader readHeader(CdrReader& reader);
 RosOdometry decodeOdometry(std::string_view message, const std::string& where);
 RosImu decodeImu(std::string_view message, const std::string& where);

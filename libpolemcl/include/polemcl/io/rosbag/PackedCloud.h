@@ -43,12 +43,12 @@ struct TimedCloud {
 ///
 /// Points need the fields x, y and z (float32 or float64); `intensity` may be of any type, and is 0
 /// where it is missing. Times are in the first of the fields `t`, `time`, `timestamp`, `time_stamp`
-/// and `offset_time` that is of one of these types: uint32 in ns, float32 or float64 in s, since
-/// the stamp. A float64 is a time of the clock of the stamp if it is above 1e8, or above 1 s and
-/// within 1 s of the stamp; above 1e11 it is in ms, us or ns. Other fields are not read. Invalid
-/// points are dropped and counted as in readKittiBin(). \param withTimes Whether to read the times.
-/// \param where Prefix of error messages. \throws Error when the sizes contradict each other, or a
-/// coordinate has another type or lies
+/// and `offset_time` that has one of these types: uint32 in ns, float32 or float64 in s. They count
+/// from the stamp. A float64 above 1e8, or above 1 and less than 1 s from the stamp, is a time of
+/// the clock of the stamp; above 1e11 it is in ms, us or ns. Other fields are not read. Invalid
+/// points are dropped and counted as in readKittiBin().
+/// \param withTimes Whether to read the times. \param where Prefix of error messages.
+/// \throws Error when the sizes contradict each other, or a coordinate has another type or lies
 ///         outside its point.
 POLEMCL_EXPORT TimedCloud unpack(const PackedCloud& packed, const std::string& where,
                                  bool withTimes);
