@@ -16,7 +16,7 @@ constexpr double kMostLevel = 0.906;            // cosine of 25°
 constexpr double kLeastShare = 0.25;
 constexpr double kLeastHeight = 0.1;  // m, of the sensor over the ground
 constexpr double kHeadShare = 0.35;   // least share of ground that is overhead
-constexpr double kMostBelow = 0.2;    // then, what lies below is no plane; in garages 0.28 and more
+constexpr double kMostBelow = 0.2;    // of what lies below then: more is a floor
 constexpr int kTrials = 400;
 
 using Points = std::vector<Eigen::Vector3d>;

@@ -100,7 +100,7 @@ const ScanLines::Counts& ScanLines::build(const PointsView& points, const Ground
     index(row);
     m_counts.used += size(row);
   }
-  constexpr std::size_t kRare = 30;  // by chance, up to one in 50 lies beside another
+  constexpr std::size_t kRare = 30;  // rarer neighbours are there by chance
   if (kRare * m_twins > m_looked)
     for (int row = 0; row < m_rows; ++row) keepNearer(row);
   m_counts.outOfView = m_next[streams] - m_streamBegin[streams];
