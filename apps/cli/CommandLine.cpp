@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include <polemcl/mrpt/common/RegisterClasses.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
 #include "cli/Failure.h"
 #include "cli/Messages.h"
 #include "cli/Outputs.h"

@@ -13,7 +13,6 @@
 
 #include <sstream>
 
-#include <polemcl/mrpt/common/RegisterClasses.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include "core/common/PoleIndex.h"

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <polemcl/mrpt/common/RegisterClasses.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
 #include "cli/RawlogActions.h"
 #include "io/data/Trajectory.h"
 #include "localize/LocalizeApp.h"

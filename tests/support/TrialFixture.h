@@ -8,7 +8,7 @@
 #include <atomic>
 #include <nlohmann/json.hpp>
 
-#include <polemcl/mrpt/common/RegisterClasses.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
 #include "eval/EvalApp.h"
 #include "eval/Trials.h"
 #include "support/CityFiles.h"

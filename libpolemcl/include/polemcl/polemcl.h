@@ -9,7 +9,6 @@
 #include <polemcl/localizer/MapBuilder.h>
 #include <polemcl/localizer/Settings.h>
 #include <polemcl/mrpt/common/Compatibility.h>
-#include <polemcl/mrpt/common/RegisterClasses.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>

@@ -12,7 +12,6 @@
 #include <random>
 #include <sstream>
 
-#include <polemcl/mrpt/common/RegisterClasses.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "core/common/PoleIndex.h"
 #include "io/map/PoleMapFile.h"

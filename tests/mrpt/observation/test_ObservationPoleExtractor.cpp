@@ -70,8 +70,8 @@ TEST(ObservationPoleExtractor, AMovingCutOfAScanWithFewPointsCorrectsNothing) {
   TestCloud cloud = plainCloud(options);
   for (auto* values : {&cloud.x, &cloud.y, &cloud.z}) values->resize(100);
   ObservationPoleExtractor extraction(options);
-  for (const PoleDetection& pole : extraction.process(*observationOf(cloud, CPose3D()))->poles)
-    EXPECT_EQ(pole.timeOffset, 0);
+  const auto scan = extraction.process(*observationOf(cloud, CPose3D()));
+  for (const PoleDetection& pole : scan->poles) EXPECT_EQ(pole.timeOffset, 0);
 }
 
 TEST(ObservationPoleExtractor, AContradictionIsNotForgotten) {

@@ -1,6 +1,5 @@
 #include <mrpt/rtti/CObject.h>
 
-#include <polemcl/mrpt/common/RegisterClasses.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <new>
 
-#include <polemcl/mrpt/common/RegisterClasses.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
 #include "io/file/FileKind.h"
 #include "io/file/ReadLimits.h"
 #include "mrpt/common/MrptReason.h"

@@ -1,6 +1,6 @@
 #pragma once
 /// \file CPoleMap.h
-/// \brief A map of poles as a metric map of MRPT.
+/// \brief A map of poles as a metric map of MRPT, and the registration of our classes in MRPT.
 
 #include <mrpt/config/CLoadableOptions.h>
 #include <mrpt/maps/CMetricMap.h>
@@ -14,7 +14,6 @@
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include <polemcl/export.h>
 #include <polemcl/mrpt/common/Compatibility.h>
-#include <polemcl/mrpt/common/RegisterClasses.h>
 
 namespace polemcl {
 
@@ -178,5 +177,14 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
   LazyIndex m_index;
   std::shared_ptr<IncrementalMerge> m_merge;  ///< of m_poles; null: nothing was inserted yet
 };
+
+/// \brief Registers CObservationPoles and CPoleMap, so that MRPT finds them by their names in
+/// rawlogs and INI files. Nothing needs to call it: loading the library does it. Further calls have
+/// no effect.
+POLEMCL_EXPORT void registerClasses();
+
+/// \brief Keeps the library in a program that includes this header and names no class of it. A
+/// linker that drops unused libraries (`--as-needed`) would not load it.
+inline const bool classesAreRegistered = (registerClasses(), true);
 
 }  // namespace polemcl
