@@ -30,9 +30,8 @@ void LocalizePlayer::take(const ReadScan& scan) {
         "import with an odometry file or with --odometry-noise");
   const PoleScan frame = frameOf(scan);
   if (!m_runs) begin(frame);
-  const std::vector<FilterStep>& steps =
-      *io::located(source + ": scan " + std::to_string(scan.index) + ": ",
-                   [&] { return &m_runs->step(frame); });
+  const std::vector<FilterStep>& steps = *io::located(
+      source + ": scan " + std::to_string(scan.index) + ": ", [&] { return &m_runs->step(frame); });
   const auto found = ScanClock::now();
   if (m_stream) m_stream->add(scan.index, steps[0].update, scan.dropped);
   m_timings.total.add(secondsSince(scan.arrival));
