@@ -71,9 +71,9 @@ Failures runThere(const BatchOptions& options, const BatchFolder& folder, const 
 /// its name.
 std::string commandOf(const BatchOptions& options, const BatchSpec& spec) {
   const auto batch = spec.file == options.batch ? spec.file.filename() : options.batch;
-  std::string command = "pole-batch " + batch.string() +
+  std::string command = "pole-batch " + shellQuoted(batch.string()) +
                         (options.data.empty() ? "" : " --data DATA") + " --output OUT";
-  for (const auto& assignment : options.set) command += " --set '" + assignment + "'";
+  for (const auto& assignment : options.set) command += " --set " + shellQuoted(assignment);
   return command;
 }
 
@@ -101,6 +101,8 @@ void doTaskOf(const BatchOptions& options, const std::string& id) {
     throw Error("the batch was begun by another build (" + plan.build + "), this is " +
                 buildIdentity() +
                 "; use one build on all machines, or begin it again with --resume");
+  if (isBlocked(folder, plan, task))
+    throw Error(id + ": needs a task that is not done with the settings of now");
   const TaskOutcome outcome = runTask(folder, task);
   if (!outcome.failure.empty()) throw Error(id + ": " + outcome.failure);
 }
@@ -142,6 +144,7 @@ void doBatch(const BatchOptions& options) {
   folder.store(plan, spec.file);
   const OpenTasks open = openTasks(folder, plan);
   for (const BatchTask* task : open.outdated) folder.remove(*task);
+  if (!open.tasks.empty()) removeResults(folder);
   if (!options.quiet) printOpen(plan, open);
 
   const auto begin = std::chrono::steady_clock::now();
@@ -215,7 +218,9 @@ int batchMain(int argc, const char* const* argv) {
   cli.add_flag("--dry-run", dry, "Print the tasks and their commands, do nothing");
   auto* one = cli.add_option("--task", task, "Do this one task of the batch in --output")
                   ->type_name("TASK");
-  batch->excludes(one);
+  for (const char* other : {"--data", "--jobs", "--imports", "--set", "--resume", "--slurm",
+                            "--sbatch", "--dry-run", "batch"})
+    one->excludes(cli.get_option(other));
   cli.parse_complete_callback([&] {
     if (task.empty() && batch->count() == 0) throw CLI::RequiredError("batch");
     if (!dry && options.output.empty()) throw CLI::RequiredError("--output");

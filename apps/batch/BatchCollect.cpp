@@ -87,11 +87,13 @@ class Collector {
     addFacts();
     for (const auto& experiment : m_plan.experiments) addExperiment(experiment);
     for (const auto& [task, reason] : m_failures)
-      m_results.failures.push_back({task, reason, "logs/" + task + ".log"});
+      m_results.failures.push_back({task, reason, logOf(task)});
     return std::move(m_results);
   }
 
  private:
+  static std::string logOf(const std::string& task) { return "logs/" + task + ".log"; }
+
   void addFacts() {
     m_results.name = m_spec.name;
     m_results.title = m_spec.title.empty() ? m_spec.name : m_spec.title;
@@ -222,7 +224,12 @@ class Collector {
     const Json& health = summary.at("runs").at(0).at("health");
     run.health = healthOf(health);
     if (health.at("first_pose_scan").is_null()) return run;  // it never knew where it was
-    judge(out / "run_00.tum", *truthOf(experiment.session), run, result.plots);
+    try {
+      judge(out / "run_00.tum", *truthOf(experiment.session), run, result.plots);
+    } catch (const Error& error) {
+      run.failure = error.what();
+      m_results.failures.push_back({experiment.runs[i], run.failure, logOf(experiment.runs[i])});
+    }
     return run;
   }
 
@@ -295,6 +302,12 @@ BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& plan) {
     kind->seconds.push_back(seconds);
   }
   return timings;
+}
+
+void removeResults(const BatchFolder& folder) {
+  for (const char* name : {"report.html", "table.tex", "results.json", "runs.csv", "sessions.csv",
+                           "maps.csv", "timings.json"})
+    fs::remove(folder.path() / name);
 }
 
 void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,

@@ -16,6 +16,7 @@ namespace polemcl::apps {
 /// \brief Reads the trajectories of all runs that are done and judges them.
 /// \param failures Failures of this and earlier attempts, by task. Tasks left open have no figures.
 /// \param command Command that makes the batch again.
+/// A run that cannot be compared with the truth is a failure of its own.
 /// \throws Error when a file of a task that is done cannot be read.
 report::BatchResults collectBatch(const BatchFolder& folder, const BatchPlan& plan,
                                   const BatchSpec& spec,
@@ -37,6 +38,9 @@ struct BatchTimings {
 
 /// \brief How long the tasks took, each the last time that it was done.
 BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& plan);
+
+/// \brief Removes all results and the report of an earlier state of the batch.
+void removeResults(const BatchFolder& folder);
 
 /// \brief Writes `results.json`, `runs.csv`, `sessions.csv`, `maps.csv` and `timings.json` into the
 /// batch's folder. \throws Error when one cannot be written.

@@ -128,6 +128,8 @@ void BatchFolder::take(const std::string& name, bool resume) {
 }
 
 void BatchFolder::store(const BatchPlan& plan, const fs::path& batchFile) {
+  std::error_code none;
+  fs::remove_all(m_path / "failed", none);  // of earlier attempts
   for (const char* folder : {"tasks", "logs", "failed", "times", "settings", "files"})
     createFolder(m_path / folder);
   sweep();

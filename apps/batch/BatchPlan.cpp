@@ -61,7 +61,7 @@ class Planner {
     for (const auto& session : m_spec.sessions)
       if (isUsed(session.name)) addPoles(session);
     for (const auto& session : m_spec.sessions)
-      if (session.truthMap == truthFromLabels && isScored(session)) addTruth(session);
+      if (session.truthMap == truthFromLabels && isScoredByAny(session)) addTruth(session);
     for (const auto& configuration : m_spec.configurations) {
       addMaps(configuration);
       for (const auto& session : m_spec.sessions)
@@ -82,14 +82,7 @@ class Planner {
         });
   }
 
-  /// Whether a session completes a map of the configuration, and its true poles are known.
-  static bool isScored(const BatchConfiguration& configuration, const BatchSession& session) {
-    const auto& names = configuration.mapSessions;
-    return !session.truthMap.empty() &&
-           (configuration.protocol == MapProtocol::each ? has(names, session.name)
-                                                        : names.back() == session.name);
-  }
-  bool isScored(const BatchSession& session) const {
+  bool isScoredByAny(const BatchSession& session) const {
     return std::any_of(m_spec.configurations.begin(), m_spec.configurations.end(),
                        [&](const auto& configuration) { return isScored(configuration, session); });
   }
@@ -99,7 +92,7 @@ class Planner {
     int count = 0;
     for (const auto& session : m_spec.sessions) {
       if (!isUsed(session.name)) continue;
-      const std::string what = inputObstacle(session, isScored(session));
+      const std::string what = inputObstacle(session, isScoredByAny(session));
       if (!what.empty() && ++count <= 3)
         missing += (count > 1 ? "; " : "") + session.name + ": " + what;
     }
@@ -118,7 +111,14 @@ class Planner {
     return frozen("settings/" + configuration + ".ini", task);
   }
 
-  /// The same for a file that settings name: it is copied into the batch's folder.
+  /// A file that settings name: beside the batch if it is there, else as the programs find it.
+  std::string besideBatch(const std::string& file) const {
+    if (file.empty()) return file;
+    const fs::path beside = fs::absolute(m_spec.file.parent_path() / file);
+    return fs::is_regular_file(beside) ? beside.string() : file;
+  }
+
+  /// The same as frozen() for a file that settings name: it is copied into the batch's folder.
   std::string frozenCopy(const std::string& file, BatchTask& task) {
     if (file.empty()) return file;
     const std::string name = "files/" + fs::path(file).filename().string();
@@ -141,6 +141,7 @@ class Planner {
   void addPoles(const BatchSession& session) {
     BatchTask task(polesPath(session.name));
     const std::string rawlog = session.name + ".rawlog", truth = session.name + ".tum";
+    if (!hasGroups(session)) requireOneGroup(session);
     if (session.source == "simulated")
       simulate(session, task);
     else if (session.source == "poles")
@@ -170,8 +171,9 @@ class Planner {
 
   void simulate(const BatchSession& session, BatchTask& task) {
     AllSettings settings = loadSettings(session.input, session.set);
-    settings.simulation.detections = frozenCopy(settings.simulation.detections, task);
-    settings.simulation.world.track = frozenCopy(settings.simulation.world.track, task);
+    settings.simulation.detections = frozenCopy(besideBatch(settings.simulation.detections), task);
+    settings.simulation.world.track =
+        frozenCopy(besideBatch(settings.simulation.world.track), task);
     const std::string file = "settings/simulate." + session.name + ".ini";
     m_plan.files[file] = settingsText(settings);
     Command command = program("pole-simulate");
@@ -207,6 +209,20 @@ class Planner {
   /// Stored and simulated poles are those of all configurations.
   static bool hasGroups(const BatchSession& session) {
     return session.source != "simulated" && session.source != "poles";
+  }
+
+  /// Settings of the extraction would be compared on the same poles.
+  void requireOneGroup(const BatchSession& session) const {
+    const std::string* first = nullptr;
+    for (const Group& group : m_groups) {
+      if (!hasPoles(group, session.name) && !hasMapPoles(group, session.name)) continue;
+      if (first)
+        throw Error("batch " + m_spec.name + ": settings " + *first + " and " + group.name +
+                    " extract poles in different ways, but session " + session.name +
+                    " (source = " + session.source +
+                    ") has its poles already; give both the same extraction, or scans");
+      first = &group.name;
+    }
   }
 
   static TaskPath polesPath(const std::string& session) { return {TaskKind::poles, {session}}; }
@@ -260,6 +276,7 @@ class Planner {
         wanted.insert(configuration.protocol == MapProtocol::each
                           ? mapFor(configuration, session.name)
                           : configuration.mapSessions.size());
+    if (wanted.empty()) return;
     const bool chain = configuration.protocol == MapProtocol::upkeep;
     for (std::size_t n = 1; n <= *wanted.rbegin(); ++n)
       if (chain || wanted.count(n)) addMap(configuration, n);

@@ -51,12 +51,12 @@ void copyFiles(const std::vector<std::string>& command, const fs::path& folder) 
   if (failure) throw Error(command.at(1) + ": cannot be copied: " + failure.message());
 }
 
-/// The last line that a command wrote: its error.
+/// The last line that a command wrote, but for the hint after wrong usage: its error.
 std::string lastLine(const fs::path& log) {
   std::ifstream stream(log);
   std::string line, last;
   while (std::getline(stream, line))
-    if (!line.empty()) last = line;
+    if (!line.empty() && line.rfind("Try `", 0) != 0) last = line;
   return last;
 }
 

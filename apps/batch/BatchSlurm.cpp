@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include <polemcl/core/common/Types.h>
@@ -44,6 +45,20 @@ std::string scriptOf(const BatchFolder& folder, const std::string& name) {
          shellQuoted(folder.path().string()) + " --task \"$task\"\n";
 }
 
+/// The number of the job in what sbatch printed: NUMBER or NUMBER;CLUSTER, after warnings.
+std::string jobIn(std::string said) {
+  std::istringstream lines(said);
+  std::string job;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string number = line.substr(0, line.find_first_of(" ;"));
+    if (!number.empty() && number.find_first_not_of("0123456789") == std::string::npos)
+      job = number;
+  }
+  std::replace(said.begin(), said.end(), '\n', ' ');
+  if (job.empty()) throw Error("sbatch names no job: " + std::string(io::trimmed(said)));
+  return job;
+}
+
 /// Submits an array of tasks that can be done at the same time. \param after Jobs that must have
 /// ended. \return The number of the job.
 std::string submit(const BatchFolder& folder, const std::string& name,
@@ -61,8 +76,7 @@ std::string submit(const BatchFolder& folder, const std::string& name,
   for (std::size_t i = 0; i < after.size(); ++i)
     command += (i == 0 ? " --dependency=afterany:" : ":") + after[i];
   for (const auto& argument : options.arguments) command += " " + shellQuoted(argument);
-  const std::string said = outputOf(command + " " + shellQuoted((here / (name + ".sh")).string()));
-  return std::string(io::trimmed(said.substr(0, said.find_first_of(";\n"))));
+  return jobIn(outputOf(command + " " + shellQuoted((here / (name + ".sh")).string())));
 }
 
 /// The open tasks by level, in arrays that Slurm takes.

@@ -112,6 +112,21 @@ void bindSession(Binder& b, SessionText& text) {
   b.text("truth_map", s.truthMap, "true poles: a file, or labels (SemanticKITTI's)");
 }
 
+/// Keys that only an import reads would have no effect on scans or poles that are there.
+void requireImport(const BatchSession& s, const std::string& where) {
+  const bool imports = s.source != "simulated" && s.source != "poles" && s.source != "scans";
+  const std::pair<const char*, bool> given[] = {{"every", s.every > 1},
+                                                {"offset", s.offset > 0},
+                                                {"odometry_noise", s.odometryNoise > 0},
+                                                {"sensor_pose", !s.sensorPose.empty()},
+                                                {"poses", !s.poses.empty()},
+                                                {"calib", !s.calib.empty()}};
+  for (const auto& [key, isGiven] : given)
+    if (isGiven && !imports)
+      throw Error(where + key + " has no effect with source = " + s.source + "; leave it out, or " +
+                  "name a dataset of pole-import as the source");
+}
+
 BatchSession finished(const SessionText& text, const std::string& name, const Placeholders& fill,
                       const std::string& where) {
   BatchSession s = text.session;
@@ -122,7 +137,8 @@ BatchSession finished(const SessionText& text, const std::string& name, const Pl
   s.calib = fill.path(s.calib, name);
   if (s.truthMap != truthFromLabels) s.truthMap = fill.path(s.truthMap, name);
   s.date = fill.filled(s.date, name);
-  s.set = words(fill.filled(text.set, name));
+  for (const std::string& word : words(text.set)) s.set.push_back(fill.filled(word, name));
+  requireImport(text.session, where + "session " + name + ": ");
   if (s.input.empty()) throw Error(where + "session " + name + ": input is missing");
   if (!s.date.empty())
     io::located(where + "session " + name + ": date: ", [&] { io::secondsOfDate(s.date); });
@@ -155,6 +171,10 @@ std::vector<BatchSession> readSessions(ConfigReader& reader, const Placeholders&
   bindSession(reader, common);
   const auto names = words(text);
   requireNames(names, where + "[sessions] names");
+  for (const char* taken : {"all", "first", "later", "none"})
+    if (has(names, taken))
+      throw Error(where + "[sessions] names: '" + taken + "' stands for several sessions in " +
+                  "map_sessions and sessions; choose another name");
   std::vector<BatchSession> sessions;
   for (const auto& name : names) {
     SessionText own = common;
@@ -293,13 +313,11 @@ void requireEstimates(const BatchConfiguration& configuration, const std::string
 /// Maps alone are of use if they get a score.
 void requireUse(const BatchConfiguration& configuration, const BatchSpec& spec,
                 const std::string& where) {
-  const auto hasTruth = [&](const std::string& name) {
-    return !spec.session(name).truthMap.empty();
-  };
   if (configuration.sessions.empty() &&
-      std::none_of(configuration.mapSessions.begin(), configuration.mapSessions.end(), hasTruth))
+      std::none_of(spec.sessions.begin(), spec.sessions.end(),
+                   [&](const BatchSession& session) { return isScored(configuration, session); }))
     throw Error(where + "sessions = none leaves nothing to report; name sessions, or give " +
-                "[sessions] truth_map");
+                configuration.mapSessions.back() + ", which completes the map, a truth_map");
 }
 
 /// A map is kept up from day to day, not back.
@@ -322,6 +340,13 @@ const BatchSession& BatchSpec::session(const std::string& wanted) const {
   for (const auto& session : sessions)
     if (session.name == wanted) return session;
   throw Error("no session '" + wanted + "' in batch " + name);
+}
+
+bool isScored(const BatchConfiguration& configuration, const BatchSession& session) {
+  const auto& names = configuration.mapSessions;
+  return !session.truthMap.empty() &&
+         (configuration.protocol == MapProtocol::each ? has(names, session.name)
+                                                      : names.back() == session.name);
 }
 
 bool has(const std::vector<std::string>& names, const std::string& name) {

@@ -82,6 +82,10 @@ struct BatchSpec {
   const BatchSession& session(const std::string& name) const;  ///< \throws Error
 };
 
+/// \brief Whether a session completes a map of the configuration, and its true poles are known: the
+/// last map session, with maps = each any of them.
+bool isScored(const BatchConfiguration& configuration, const BatchSession& session);
+
 /// \brief Whether a list has this name.
 bool has(const std::vector<std::string>& names, const std::string& name);
 
@@ -94,7 +98,7 @@ bool has(const std::vector<std::string>& names, const std::string& name);
 /// \throws Error naming file, section and key: what ConfigReader refuses, names that are given
 ///         twice or have other characters, unknown sessions and configurations, `{data}` without
 ///         `--data`, a session localized in the map before it when no map comes before it, a
-///         configuration that neither localizes nor scores.
+///         configuration that neither localizes nor scores, keys of an import without an import.
 BatchSpec readBatchSpec(const std::filesystem::path& file, const std::filesystem::path& data = {},
                         const std::vector<std::string>& set = {});
 

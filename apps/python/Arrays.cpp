@@ -4,6 +4,8 @@
 #include <cstring>
 #include <functional>
 
+#include "python/Lock.h"
+
 namespace py = pybind11;
 
 namespace polemcl::apps::python {
@@ -40,11 +42,21 @@ std::string described(const std::vector<py::ssize_t>& shape) {
 
 /// Any object as an array with NumPy's rules.
 py::array arrayFrom(const py::object& object, const std::string& argument) {
-  py::array array = object.is_none() ? py::array() : py::array::ensure(object);
+  py::array array =
+      object.is_none() ? py::array() : untilPythonEnds([&] { return py::array::ensure(object); });
   if (object.is_none() || !array)
     throw Error(argument + ": a NumPy array is needed, not " +
                 std::string(py::str(py::type::of(object).attr("__name__"))));
   return array;
+}
+
+/// NumPy lets go of Python's lock while it copies.
+template <class Number>
+auto copyOf(const py::array& array, const std::string& argument) {
+  using Copy = py::array_t<Number, py::array::c_style | py::array::forcecast>;
+  Copy copy = untilPythonEnds([&] { return Copy::ensure(array); });
+  if (!copy) throw Error(argument + ": cannot be copied; is there memory enough?");
+  return copy;
 }
 
 bool hasShape(const py::array& array, const std::vector<py::ssize_t>& shape) {
@@ -153,7 +165,7 @@ Points pointsFrom(const py::object& object) {
   if (!shaped || array.dtype().kind() != 'f' || array.itemsize() != sizeof(float))
     throw Error("points: an array (n, 3) or (n, 4) of float32 is needed, not " + described(array) +
                 "; numpy.float32(points) converts numbers");
-  const auto rows = py::array_t<float, py::array::c_style | py::array::forcecast>(array);
+  const auto rows = copyOf<float>(array, "points");
   const auto values = rows.unchecked<2>();
   Points points;
   for (auto* axis : {&points.x, &points.y, &points.z})
@@ -195,7 +207,7 @@ std::vector<double> numbersFrom(const py::object& object, const std::string& arg
   if (!hasShape(array, shape) || std::string("fiu").find(array.dtype().kind()) == std::string::npos)
     throw Error(argument + ": " + described(shape) + " of numbers is needed, not " +
                 described(array));
-  const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>(array);
+  const auto values = copyOf<double>(array, argument);
   return {values.data(), values.data() + values.size()};
 }
 

@@ -7,6 +7,7 @@
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "python/Arrays.h"
 #include "python/Classes.h"
+#include "python/Lock.h"
 
 namespace py = pybind11;
 

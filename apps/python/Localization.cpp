@@ -7,6 +7,7 @@
 #include <polemcl/localizer/Localizer.h>
 #include "python/Arrays.h"
 #include "python/Classes.h"
+#include "python/Lock.h"
 #include "python/Maps.h"
 
 namespace py = pybind11;

@@ -12,6 +12,7 @@
 #include "core/mapping/DetectionToMap.h"
 #include "python/Arrays.h"
 #include "python/Classes.h"
+#include "python/Lock.h"
 
 namespace py = pybind11;
 

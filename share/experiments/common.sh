@@ -172,10 +172,11 @@ runs_json() {
 
 # link_scans DRIVE FOLDER FIRST LAST: the scans FIRST to LAST (from 1) of a drive as a folder of their own, as links.
 link_scans() (
+  from=$(cd "$1" && pwd)
   rm -rf "$2"
   mkdir -p "$2/velodyne"
-  for file in times.txt poses.txt; do grep -v '^#' "$1/$file" | sed -n "$3,$4p" >"$2/$file"; done
-  find "$1/velodyne/" -name '*.bin' | sort | sed -n "$3,$4p" | while read -r scan; do ln -s "$scan" "$2/velodyne/"; done
+  for file in times.txt poses.txt; do grep -v '^#' "$from/$file" | sed -n "$3,$4p" >"$2/$file"; done
+  find "$from/velodyne/" -name '*.bin' | sort | sed -n "$3,$4p" | while read -r scan; do ln -s "$scan" "$2/velodyne/"; done
 )
 
 # kilometre_arguments DATA_DIR KILOMETRE OUT: sets labels, kilometre and out, which is made.

@@ -74,15 +74,18 @@ build_map() {
 script nclt_frames "$keyframes" "$truth" "$out"
 "$bin/pole-map" convert --quiet "$authors" --output "$out/authors.polemap"
 "$bin/pole-map" convert --quiet "$authors" --output "$out/authors.csv"
+: >"$out/settings.jsonl"
 for frames in 1 10 20 40 80; do
   views frames "views$frames" --last $frames
   cp "$out/views$frames/settings.ini" "$out/$frames.ini"
   import_drive "views$frames" "drive$frames" "$out/truth.tum"
   for confidence in 0.3 0.5 0.65; do
-    localize $frames $confidence "drive$frames" authors 3 |
-      jq --argjson frames $frames --argjson confidence $confidence '{key_frames: $frames, min_confidence: $confidence} + .'
+    localize $frames $confidence "drive$frames" authors 3 >"$out/one.json"
+    jq --argjson frames $frames --argjson confidence $confidence \
+      '{key_frames: $frames, min_confidence: $confidence} + .' "$out/one.json" >>"$out/settings.jsonl"
   done
-done | jq -s . >"$out/settings.json"
+done
+jq -s . "$out/settings.jsonl" >"$out/settings.json"
 frames=$(jq 'min_by(.first_half.mean_m).key_frames' "$out/settings.json")
 confidence=$(jq 'min_by(.first_half.mean_m).min_confidence' "$out/settings.json")
 drive=drive$frames

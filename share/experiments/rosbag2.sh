@@ -32,5 +32,6 @@ for way in direct bag mcap; do
   cut -d, -f1,3- "$out/$way.csv" >"$out/$way.cut" # without the times, which differ by 1.5e9 s
 done
 for way in bag mcap; do
-  cmp "$out/$way.cut" "$out/direct.cut" && echo "$way: poles of all scans: the same"
+  cmp "$out/$way.cut" "$out/direct.cut"
+  echo "$way: poles of all scans: the same"
 done

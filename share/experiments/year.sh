@@ -27,7 +27,8 @@ config=$top/config/hdl32e.ini
 
 sed "s/world\.seed=500/world.seed=$world/" "$top/config/batches/year.ini" >"$out/year.ini"
 for key in config input; do sed -i "s#^$key = config/#$key = $top/config/#" "$out/year.ini"; done
-sed -i "s#detections=hdl32e.json#detections=$top/share/models/hdl32e.json#" "$out/year.ini"
+cp "$top/share/models/hdl32e.json" "$out/"
+sed -i 's#detections=hdl32e.json#detections={here}/hdl32e.json#' "$out/year.ini"
 resume=
 [ ! -d "$batch" ] || resume=--resume
 "$bin/pole-batch" "$out/year.ini" --quiet --output "$batch" --set "batch.runs=$runs" $resume

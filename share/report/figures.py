@@ -37,6 +37,11 @@ matplotlib.rcParams.update({
 })
 
 
+def dashes(i):
+    """Of setting i: from the seventh on, colours come again with other dashes."""
+    return DASHES[(i + i // 6) % 6]
+
+
 class Plot:
     """A figure with one pair of axes; sizes in pixels."""
 
@@ -130,7 +135,7 @@ def sessions_figure(report, key, name, unit):
                                  color=color, linewidth=2, alpha=0.5)
             plot.axes.plot([x], [scale * min(mean, limit)], color=color, clip_on=False, zorder=3,
                            gid=plot.hint(hint), **mark)
-        plot.axes.plot(*zip(*points), color=color, linewidth=1.4, linestyle=DASHES[i % 6], alpha=0.75)
+        plot.axes.plot(*zip(*points), color=color, linewidth=1.4, linestyle=dashes(i), alpha=0.75)
     description = (f"Mean over the runs of each session, bars of one standard deviation, for "
                    f"{plural(len(figures), 'setting')}.")
     return plot.svg("wide", f"{name} per session", description), above
@@ -154,7 +159,7 @@ def histogram_figure(report, key, name, unit):
         shares = [100 * one / (sum(counts) or math.nan) for one in counts]
         style = {"baseline": None, "color": SERIES[i % 6]}
         plot.axes.stairs(shares, EXPONENTS, fill=True, alpha=0.13, color=SERIES[i % 6])
-        plot.axes.stairs(shares, EXPONENTS, linewidth=2, linestyle=DASHES[i % 6], **style)
+        plot.axes.stairs(shares, EXPONENTS, linewidth=2, linestyle=dashes(i), **style)
     low = min(used) // 10 - 3
     plot.axes.set(xlim=(low, max(low + 2, max(used) // 10 - 2)), ylim=(0, None))
     plot.axes.set_xticks(ticks := range(low, round(plot.axes.get_xlim()[1]) + 1),

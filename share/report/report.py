@@ -147,7 +147,10 @@ class Report:
         share = Markup("<i>f</i><sub>map</sub> (%)")
         if not self.systems:
             return [], ["Session", share, *(one.html for one in columns), "Runs"]
-        names = [["this run", *(one.split(" ")[0] for one in systems)] for systems in (sharing, self.systems)]
+        short = {one: one.split(" ")[0] for one in self.systems}
+        if len(set(short.values())) < len(short):
+            short = {one: one for one in self.systems}
+        names = [["this run", *(short[one] for one in systems)] for systems in (sharing, self.systems)]
         over = [(share, len(names[0])), *((one.html, len(names[1])) for one in columns)]
         return [("", 1), *over, ("", 1)], ["Session", *names[0], *(names[1] * len(columns)), "Runs"]
 

@@ -14,15 +14,16 @@ out=$(cd "$1" && pwd)
 shift
 [ $# -gt 0 ] || set -- trixie bookworm
 
+# shellcheck source=share/setup/debian.sh
+. "$top/share/setup/debian.sh"
+[ "$(id -u)" = 0 ] || fail "needs root, for chroot"
 for release in "$@"; do
-  dir=$(mktemp -d)
-  # shellcheck source=share/setup/debian.sh
-  . "$top/share/setup/debian.sh"
   case $release in
     trixie | bookworm) ;;
     *) fail "$release: known are trixie and bookworm" ;;
   esac
-  [ "$(id -u)" = 0 ] || fail "needs root, for chroot"
+  dir=$(mktemp -d)
+  root=$dir/root
   trap clean_up EXIT
   echo "$release: an empty Debian"
   make_root

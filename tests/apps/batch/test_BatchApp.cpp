@@ -256,10 +256,55 @@ TEST_F(BatchApp, TasksDoneByHandNeedTheSettingsOfTheBatch) {
   EXPECT_EQ(left("hand"), left("done"));
 }
 
+TEST_F(BatchApp, ATaskByHandNeedsMapsOfTheSameSettings) {
+  fs::copy(*s_folder / "done", *s_folder / "newer", fs::copy_options::recursive);
+  BatchPlan plan = readPlan(*s_folder / "newer/plan.json");
+  for (BatchTask& task : plan.tasks)
+    if (task.kind != TaskKind::poles) task.key += " of other settings";
+  writePlan(*s_folder / "newer/plan.json", plan);
+  expectFailure(runProgram(batchMain, {"--output", (*s_folder / "newer").string(), "--task",
+                                       "run.once.s1.00"}),
+                {"run.once.s1.00: needs a task that is not done with the settings of now"});
+}
+
+// An old page would tell of other settings.
+TEST_F(BatchApp, ResultsGoBeforeNewOnesCome) {
+  fs::copy(*s_folder / "done", *s_folder / "stale", fs::copy_options::recursive);
+  writeText(*s_folder / "python/matplotlib.py", "raise ImportError('No Matplotlib here')\n");
+  ::setenv("PYTHONPATH", (*s_folder / "python").c_str(), 1);
+  BatchOptions options = optionsFor("stale");
+  options.resume = true;
+  options.set = {"batch.runs=1", "setting once.set=filter.particles=100"};
+  EXPECT_NE(messageOf([&] { doBatch(options); }), "");
+  ::unsetenv("PYTHONPATH");
+  EXPECT_FALSE(fs::exists(*s_folder / "stale/report.html"));
+  EXPECT_TRUE(fs::exists(*s_folder / "stale/results.json"));
+}
+
+TEST_F(BatchApp, ARunThatCannotBeComparedIsReportedAlone) {
+  BatchOptions options = optionsFor("sparse");
+  // Scans 2.5 s apart: there is no estimate at most of the metres.
+  options.set = {"batch.runs=1",
+                 "batch.settings=once",
+                 "batch.errors=metre",
+                 "sessions.names=s0 s1",
+                 "setting once.sessions=s1",
+                 "session s1.set=world.day=1 simulation.speed_m_s=1 simulation.spacing_m=2.5"};
+  testing::internal::CaptureStderr();
+  const std::string message = messageOf([&] { doBatch(options); });
+  testing::internal::GetCapturedStderr();
+  EXPECT_NE(message.find("run.once.s1.00: "), std::string::npos) << message;
+  const auto results = resultsIn(*s_folder / "sparse");
+  EXPECT_NE(resultOf(results, "once", "s1")["runs"][0]["failure"], "");
+  EXPECT_TRUE(fs::exists(*s_folder / "sparse/report.html"));
+}
+
 TEST_F(BatchApp, RefusesWrongUsage) {
   expectUsageError(runProgram(batchMain, {}));
   expectUsageError(runProgram(batchMain, {"a.ini"}));
   expectUsageError(runProgram(batchMain, {"a.ini", "--output", "o", "--task", "x"}));
+  for (const char* other : {"--dry-run", "--resume", "--slurm"})
+    expectUsageError(runProgram(batchMain, {"--output", "o", "--task", "x", other}));
   expectUsageError(runProgram(batchMain, {"a.ini", "--output", "o", "--sbatch", "x"}));
   expectFailure(runProgram(batchMain, {"/not/there.ini", "--output", "o"}), {"/not/there.ini"});
   expectFailure(runProgram(batchMain, {"--output", (*s_folder / "done").string(), "--task", "x"}),
@@ -311,7 +356,7 @@ TEST_F(BatchApp, ScoresItsMaps) {
   EXPECT_EQ(oneToOne["matches"], map.size() - 1);
   EXPECT_NEAR(score["one_to_one_0.5m"]["f1"], 1 - 1.0 / static_cast<double>(map.size()), 1e-9);
   const std::string command = results["command"];
-  EXPECT_NE(command.find("--set 'batch.runs=1'"), std::string::npos) << command;
+  EXPECT_NE(command.find("--set batch.runs=1"), std::string::npos) << command;
 }
 
 TEST_F(BatchApp, WritesALineAfterEachTaskWithoutATerminal) {

@@ -139,6 +139,39 @@ TEST(BatchPlan, SettingsWithTheSameExtractionShareTheirPoles) {
   EXPECT_NE(plan.files.at("settings/two.ini").find("particles = 7"), std::string::npos);
 }
 
+// They would be compared on the same poles.
+TEST(BatchPlan, SettingsOfTheExtractionNeedScans) {
+  static const TempFolder folder;
+  writeText(folder / "a.ini", "[world]\nlength_m = 60\n");
+  const auto settings = [](const std::string& second) {
+    return [=](BatchSpec& spec) {
+      for (auto& session : spec.sessions) {
+        session.source = "simulated";
+        session.input = (folder / "a.ini").string();
+      }
+      spec.configurations.push_back(spec.configurations[0]);
+      spec.configurations[1].name = "two";
+      spec.configurations[1].set = {second};
+    };
+  };
+  EXPECT_HAS(messageOf([&] { planOf(settings("scan_line.max_range_m=10")); }),
+             "settings one and two extract poles in different ways, but session a (source = "
+             "simulated)");
+  EXPECT_EQ(planOf(settings("filter.particles=7")).task("poles.a").outputs.size(), 3u);
+}
+
+TEST(BatchPlan, TracksAreTakenFromBesideTheBatch) {
+  static const TempFolder folder;
+  writeText(folder / "a.ini", "[world]\ntrack = track.txt\n");
+  writeText(folder / "track.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 60\n");
+  const BatchPlan plan = planOf([](BatchSpec& spec) {
+    spec.file = folder / "batch.ini";
+    spec.sessions[0].source = "simulated";
+    spec.sessions[0].input = (folder / "a.ini").string();
+  });
+  EXPECT_EQ(plan.files.at("files/track.txt"), readText(folder / "track.txt"));
+}
+
 TEST(BatchPlan, MapsTakeDoubtfulPolesWhereTheyAreAskedFor) {
   const BatchPlan plan = planOf([](BatchSpec& spec) {
     spec.configurations[0].set = {"map.min_confidence=0.3"};

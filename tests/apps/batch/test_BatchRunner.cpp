@@ -29,7 +29,7 @@ class BatchRunner : public testing::Test {
     // Writes its second argument, and what the file of the third holds, to the first.
     addProgram("write",
                "echo \"$2\" > \"$1\"; [ -z \"$3\" ] || cat \"$3\" >> \"$1\"; echo aside > other");
-    addProgram("fail", "echo one; echo 'no scan in it' >&2; exit 1");
+    addProgram("fail", "echo one; echo 'no scan in it' >&2; echo 'Try `fail --help`.'; exit 1");
     addProgram("die", "kill -9 $$");
     addProgram("silent", "exit 3");
     ::setenv("POLEMCL_BIN", (m_temporary / "bin").c_str(), 1);
@@ -117,6 +117,8 @@ TEST_F(BatchRunner, AFailureStopsOnlyWhatNeedsIt) {
   EXPECT_FALSE(fs::exists(m_batch.work("a")));
   EXPECT_EQ(m_batch.failure("a"), "no scan in it");
   EXPECT_NE(readText(m_batch.log("a")).find("$ fail\none\n"), std::string::npos);
+  m_batch.store(m_plan, m_temporary / "batch.ini");  // the next attempt has failures of its own
+  EXPECT_EQ(m_batch.failure("a"), "");
   // Mended, it is done, and what needs it.
   m_plan.tasks[0].commands = {{"write", "out", "A"}};
   EXPECT_EQ(run(1), (Names{"a", "b", "c"}));

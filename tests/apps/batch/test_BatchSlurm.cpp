@@ -64,6 +64,14 @@ TEST_F(BatchSlurm, SaysWhichJobsMayRunWhenItGivesUp) {
                  "before --resume: scancel 7 7");
 }
 
+TEST_F(BatchSlurm, FindsTheJobAmongWarnings) {
+  command("sbatch", "echo 'sbatch: lua: job (of 1 h) will be charged' >&2; echo '8;cluster'");
+  m_options.patienceSeconds = 0.05;
+  EXPECT_REFUSED(runWith(1000), "before --resume: scancel 8 8");
+  command("sbatch", "echo 'sbatch: 2 warnings'");
+  EXPECT_REFUSED(runWith(0), "sbatch names no job: sbatch: 2 warnings");
+}
+
 TEST_F(BatchSlurm, SaysWhichJobsMayRunWhenTheNextIsRefused) {
   command("sbatch", "[ ! -e " + (m_folder / "one").string() + " ] || exit 1; echo >" +
                         (m_folder / "one").string() + "; echo 7");

@@ -34,7 +34,7 @@ TEST(BatchSpec, ReadsSessionsWithTheirDifferences) {
       "2012-01-08\n"
       "odometry_noise = 0.02\n"
       "[session b]\ninput = other/{session}.ini\nsource = simulated\nset = world.day=3 "
-      "world.seed=4\n"
+      "world.seed=4\nodometry_noise = 0\n"
       "[setting one]\nconfig = c.ini\nset = filter.particles=5\nsessions = b\nmaps = upkeep\n"
       "poses = estimate\n",
       "/d");
@@ -46,7 +46,9 @@ TEST(BatchSpec, ReadsSessionsWithTheirDifferences) {
   EXPECT_EQ(spec.session("a").input, "/d/s/a");
   EXPECT_EQ(spec.session("a").source, "nclt");
   EXPECT_EQ(spec.session("a").date, "2012-01-08");
-  EXPECT_EQ(spec.session("b").odometryNoise, 0.02);
+  EXPECT_EQ(spec.session("a").odometryNoise, 0.02);
+  EXPECT_EQ(spec.session("b").odometryNoise, 0);
+  EXPECT_EQ(spec.session("b").date, "2012-01-08");
   EXPECT_EQ(spec.session("b").set, (std::vector<std::string>{"world.day=3", "world.seed=4"}));
   EXPECT_EQ(fs::path(spec.session("b").input).filename(), "b.ini");
   EXPECT_EQ(fs::path(spec.session("b").input).parent_path().filename(), "other");
@@ -197,6 +199,47 @@ TEST(BatchSpec, MapsAloneAndMapsOfEachNeedSense) {
   EXPECT_HAS(refusal(head + "truth_map = {data}/x\n" + configuration), "--data");
   EXPECT_HAS(refusal("[batch]\nsettings = one\npublished = all\n" + sessions + configuration),
              "semantickitti");
+}
+
+TEST(BatchSpec, AMapAloneNeedsTruePolesOfItsLastSession) {
+  const std::string head = "[batch]\nsettings = one\n" + sessions;
+  const std::string alone = configuration + "map_sessions = a b\nsessions = none\n";
+  EXPECT_HAS(refusal(head + "[session a]\ntruth_map = t.csv\n" + alone), "give b,");
+  EXPECT_EQ(read(head + "[session b]\ntruth_map = t.csv\n" + alone).sessions[0].truthMap, "");
+  EXPECT_EQ(read(head + "[session a]\ntruth_map = t.csv\n" + alone + "maps = each\n")
+                .configurations[0]
+                .mapSessions.size(),
+            2u);
+}
+
+// Of a split into even and odd scans, a drive would be localized in its own data.
+TEST(BatchSpec, KeysOfAnImportNeedOne) {
+  const std::string head =
+      "[batch]\nsettings = one\n" + configuration + "[sessions]\nnames = a b\ninput = x\n";
+  for (const std::string source : {"simulated", "poles", "scans"})
+    for (const std::string key : {"every = 2", "offset = 1", "odometry_noise = 0.1",
+                                  "sensor_pose = 1 2 3 0 0 0", "poses = p.tum", "calib = c"})
+      EXPECT_HAS(refusal(head + "source = " + source + "\n" + key + "\n"),
+                 key.substr(0, key.find(' ')) + " has no effect with source = " + source);
+}
+
+TEST(BatchSpec, WordsForSeveralSessionsAreNoNames) {
+  for (const std::string name : {"all", "first", "later", "none"})
+    EXPECT_HAS(refusal("[batch]\nsettings = one\n[sessions]\nnames = " + name + " b\ninput = x\n" +
+                       configuration),
+               "'" + name + "' stands for several sessions");
+}
+
+TEST(BatchSpec, FoldersInSettingsMayHaveBlanks) {
+  const TempFolder folder;
+  fs::create_directories(folder / "a b");
+  writeText(folder / "a b/c.ini",
+            "[batch]\nsettings = one\n[sessions]\nnames = a b\nsource = simulated\ninput = x.ini\n"
+            "set = world.track={here}/t.txt world.seed=6\n" +
+                configuration + "sessions = b\n");
+  EXPECT_EQ(readBatchSpec(folder / "a b/c.ini").session("a").set,
+            (std::vector<std::string>{"world.track=" + (folder / "a b").string() + "/t.txt",
+                                      "world.seed=6"}));
 }
 
 TEST(BatchSpec, ValuesCanBePutInPlaceOfTheFiles) {

@@ -122,6 +122,52 @@ TEST_F(Simulation, BytesDoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(files, 16u + 16u + 4u);
 }
 
+// Points on poles, seen while the vehicle turns round a corner and put back by its true motion.
+TEST_F(Simulation, DistortionIsThatOfTheMotionInBends) {
+  m_options.motionDistortion = true;
+  m_options.scans = 1000;
+  m_options.spacing = 1.5;
+  m_options.world.length = 400;
+  m_options.world.sideStreets = 1;
+  m_options.detour = 1;
+  const SimulatedDrive simulated(m_options);
+  const Drive& drive = simulated.drive();
+  const ScanTiming timing = timingOf(simulated.lidar());
+  const auto yaw = [&](std::size_t i) {
+    const Eigen::Matrix3d turn = drive.T_map_sensor[i].linear();
+    return std::atan2(turn(1, 0), turn(0, 0));
+  };
+  // A wrong velocity across the vehicle moves what is seen at its sides, the more the longer ago.
+  double products = 0, squares = 0;
+  for (std::size_t i = 1; i + 1 < simulated.scans(); ++i) {
+    const double dt = drive.time[i + 1] - drive.time[i - 1];
+    const double rate = std::remainder(yaw(i + 1) - yaw(i - 1), 2 * M_PI) / dt;
+    if (std::abs(rate) < 0.3) continue;
+    const Eigen::Vector3d velocity =
+        (drive.T_map_sensor[i + 1].translation() - drive.T_map_sensor[i - 1].translation()) / dt;
+    const SimulatedScan scan = simulated.scan(i);
+    for (std::size_t k = 0; k < scan.size(); ++k)
+      for (const TruePole& pole : simulated.world().poles()) {
+        if (pole.id != scan.label[k] || std::abs(scan.z[k]) > 0.7f) continue;  // no arm, no plate
+        const double t = timing.offset(std::atan2(scan.y[k], scan.x[k]));
+        if (std::abs(t) < 0.03) continue;  // near the middle of the turn nothing moves
+        const Eigen::Vector3d seen(scan.x[k], scan.y[k], scan.z[k]);
+        const Eigen::Vector3d place = drive.T_map_sensor[i].translation() + t * velocity +
+                                      Eigen::AngleAxisd(rate * t, Eigen::Vector3d::UnitZ()) *
+                                          (drive.T_map_sensor[i].linear() * seen);
+        const Eigen::Vector2d beyond(place.x() - pole.x, place.y() - pole.y);
+        const Eigen::Vector2d ray = Eigen::Vector2d(beyond + Eigen::Vector2d(pole.x, pole.y) -
+                                                    drive.T_map_sensor[i].translation().head<2>())
+                                        .normalized();
+        const double u = t * scan.y[k] / std::hypot(scan.x[k], scan.y[k]) * (rate > 0 ? 1 : -1);
+        products += u * (beyond.dot(ray) + pole.radius);
+        squares += u * u;
+      }
+  }
+  ASSERT_GT(squares, 0.1);
+  EXPECT_NEAR(products / squares, 0, 0.1);  // m/s
+}
+
 TEST_F(Simulation, RefusesAFolderItCannotWriteTo) {
   const fs::path file = folder("out") / "file";
   std::ofstream(file) << "in the way";

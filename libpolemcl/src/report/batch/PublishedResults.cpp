@@ -30,7 +30,8 @@ void requireSessionColumns(const io::CsvTable& table, const std::filesystem::pat
 }  // namespace
 
 std::vector<std::string> publishedDatasets() {
-  const std::filesystem::path file = io::installedFile("tables.json", "published");
+  const std::filesystem::path file = io::fileOfDataFolder("tables.json", "published");
+  if (file.empty()) throw Error("published/tables.json is not among the installed files");
   std::vector<std::string> keys;
   try {
     const auto tables = nlohmann::ordered_json::parse(io::readBytes(file));

@@ -77,10 +77,12 @@ void writeDrive(const Drive& drive, const SimulationOptions& options, const Lida
 /// \brief Mean motion of the sensor around a scan, in its own frame.
 Motion motionAt(const Drive& drive, std::size_t i) {
   const std::size_t from = i == 0 ? 0 : i - 1, to = std::min(i + 1, drive.time.size() - 1);
-  const Eigen::Isometry3d step = drive.T_map_sensor[from].inverse() * drive.T_map_sensor[to];
+  const auto& T = drive.T_map_sensor;
+  const Eigen::Isometry3d step = T[from].inverse() * T[to];
   const double duration = drive.time[to] - drive.time[from];
   Motion motion;
-  motion.velocity = step.translation() / duration;
+  motion.velocity =
+      T[i].linear().transpose() * (T[to].translation() - T[from].translation()) / duration;
   motion.yawRate = std::atan2(step.linear()(1, 0), step.linear()(0, 0)) / duration;
   return motion;
 }
