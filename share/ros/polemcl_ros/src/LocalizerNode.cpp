@@ -13,10 +13,9 @@ namespace {
 
 /// Scans that wait for odometry; one more drops the oldest.
 constexpr std::size_t kMostWaiting = 5;
-/// Scans from which the turn of the LiDAR is learnt.
-constexpr std::size_t kTimingScans = 5;                   // the first
-constexpr std::size_t kAllTimingScans = 20, kApart = 20;  // later ones, which are so far apart
-constexpr int kWarningEvery = 5000;                       // ms
+/// After the first scans, each of this number tells whether the LiDAR turns as was learnt.
+constexpr std::size_t kTimingEvery = 20;
+constexpr int kWarningEvery = 5000;  // ms
 
 /// Parameters of the INI file have names that nobody can declare beforehand.
 rclcpp::NodeOptions withAllParameters(rclcpp::NodeOptions options) {
@@ -95,7 +94,9 @@ void LocalizerNode::setUp() {
   if (file.empty() || map.empty())
     throw polemcl::Error(
         "the parameters settings and map must name an INI file and a map of poles (.polemap)");
-  m_localizer.emplace(polemcl::Settings(file, assignments()), map);
+  const polemcl::Settings settings(file, assignments());
+  m_localizer.emplace(settings, map);
+  m_learnsTiming = settings.sensor().timing.turn == polemcl::Turn::automatic;
   if (!m_localizer->isStarted()) m_localizer->startAnywhere();
   m_mapFrame = get_parameter("map_frame").as_string();
   const rclcpp::Parameter tolerance = get_parameter("transform_tolerance_s");
@@ -175,7 +176,8 @@ void LocalizerNode::release() {
   m_listener.reset();
   m_transforms.reset();
   m_waiting.clear();
-  m_timedScans.clear();
+  m_timing = {};
+  m_timingNote.clear();
   m_scans = 0;
   m_localizer.reset();
 }
@@ -249,22 +251,26 @@ std::optional<Eigen::Isometry3d> LocalizerNode::poseOnRobot(
 
 void LocalizerNode::localize(const Cloud& cloud, const Eigen::Isometry3d& T_robot_lidar) {
   const std::string where = std::string(m_clouds->get_topic_name()) + ": ";
-  // Later scans tell whether the azimuth at which they begin moves.
-  const bool tellsTiming = m_timedScans.size() < kTimingScans ||
-                           (m_timedScans.size() < kAllTimingScans && m_scans % kApart == 0);
-  polemcl::io::TimedCloud scan = polemcl::io::unpack(packedOf(cloud), where, tellsTiming);
+  const bool tellsTiming = m_learnsTiming && (!m_timing.complete() || m_scans % kTimingEvery == 0);
+  const polemcl::io::TimedCloud scan = polemcl::io::unpack(packedOf(cloud), where, tellsTiming);
   const auto update =
       m_localizer->step(secondsOf(cloud.header.stamp), scan.cloud.view(), T_robot_lidar);
   publish(update, cloud.header);
   ++m_scans;
-  if (tellsTiming) learnTiming(std::move(scan));
+  if (tellsTiming) learnTiming(scan);
 }
 
-void LocalizerNode::learnTiming(polemcl::io::TimedCloud cloud) {
-  m_timedScans.push_back(std::move(cloud));
-  if (m_timedScans.size() < kTimingScans) return;
-  if (const auto timing = polemcl::io::timingOf(m_timedScans))
-    m_localizer->setRecordedTiming(*timing);
+void LocalizerNode::learnTiming(const polemcl::io::TimedCloud& scan) {
+  m_timing.add(scan);
+  if (!m_timing.complete() || m_timing.note() == m_timingNote) return;
+  m_timingNote = m_timing.note();
+  const polemcl::ScanTiming timing = m_timing.timing();
+  m_localizer->setRecordedTiming(timing);  // also where later scans refute what was learnt
+  m_learnsTiming = timing.known();
+  if (m_learnsTiming)
+    RCLCPP_INFO(get_logger(), "%s", m_timingNote.c_str());
+  else
+    RCLCPP_WARN(get_logger(), "%s; [sensor] turn states it", m_timingNote.c_str());
 }
 
 void LocalizerNode::publish(const polemcl::LocalizationUpdate& update,

@@ -59,15 +59,18 @@ class LocalizerNode : public rclcpp_lifecycle::LifecycleNode {
   void localizeWaiting();
   std::optional<Eigen::Isometry3d> poseOnRobot(const std_msgs::msg::Header& lidar) const;
   void localize(const Cloud& cloud, const Eigen::Isometry3d& T_robot_lidar);
-  void learnTiming(polemcl::io::TimedCloud cloud);
+  /// \brief Learns how the LiDAR turns; a timing that a later scan refutes goes out of use.
+  void learnTiming(const polemcl::io::TimedCloud& scan);
   void publish(const polemcl::LocalizationUpdate& update, const std_msgs::msg::Header& lidar);
 
   std::optional<polemcl::Localizer> m_localizer;
   std::string m_mapFrame, m_odometryFrame, m_robotFrame;
   double m_tolerance = 0;  ///< for which the transform is valid after its scan, s
-  std::deque<Cloud::ConstSharedPtr> m_waiting;        ///< for odometry of their time
-  std::vector<polemcl::io::TimedCloud> m_timedScans;  ///< they tell how the LiDAR turns
-  std::size_t m_scans = 0;                            ///< so far
+  std::deque<Cloud::ConstSharedPtr> m_waiting;  ///< for odometry of their time
+  bool m_learnsTiming = false;           ///< how the LiDAR turns: neither stated nor given up
+  polemcl::io::TimingEstimate m_timing;  ///< what the scans so far tell
+  std::string m_timingNote;              ///< as logged
+  std::size_t m_scans = 0;               ///< so far
 
   std::unique_ptr<tf2_ros::Buffer> m_transforms;
   std::unique_ptr<tf2_ros::TransformListener> m_listener;
