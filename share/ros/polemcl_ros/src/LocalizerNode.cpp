@@ -1,5 +1,7 @@
 #include "LocalizerNode.h"
 
+#include <tf2/exceptions.h>
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <rclcpp_components/register_node_macro.hpp>
@@ -11,8 +13,10 @@
 namespace polemcl_ros {
 namespace {
 
-/// Scans that wait for odometry; one more drops the oldest.
-constexpr std::size_t kMostWaiting = 5;
+/// A scan waits for odometry and transform until one comes that is so much later, s, or until more
+/// of them wait.
+constexpr double kLongestWait = 2;
+constexpr std::size_t kMostWaiting = 50;
 /// After the first scans, each of this number tells whether the LiDAR turns as was learnt.
 constexpr std::size_t kTimingEvery = 20;
 constexpr int kWarningEvery = 5000;  // ms
@@ -184,14 +188,20 @@ void LocalizerNode::release() {
 
 void LocalizerNode::take(const Cloud::ConstSharedPtr& cloud) {
   m_waiting.push_back(cloud);
-  if (m_waiting.size() > kMostWaiting) {
+  const double newest = secondsOf(cloud->header.stamp);
+  const auto isOld = [&](const Cloud& scan) {  // or of a clock that was set back
+    return std::abs(newest - secondsOf(scan.header.stamp)) > kLongestWait;
+  };
+  while (isOld(*m_waiting.front()) || m_waiting.size() > kMostWaiting) {
+    refuse(m_waiting.front()->header, "a scan is dropped: " + m_lack);
     m_waiting.pop_front();
-    RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), kWarningEvery,
-                         "a scan is dropped: no odometry of its time came, or no transform from %s "
-                         "to %s",
-                         cloud->header.frame_id.c_str(), m_robotFrame.c_str());
   }
   localizeWaiting();
+}
+
+void LocalizerNode::refuse(const std_msgs::msg::Header& scan, const std::string& why) {
+  RCLCPP_ERROR_THROTTLE(get_logger(), m_steadyClock, kWarningEvery, "%s", why.c_str());
+  m_diagnostics->publish(failureOf(why, scan));
 }
 
 void LocalizerNode::take(const Odometry& odometry) {
@@ -199,8 +209,8 @@ void LocalizerNode::take(const Odometry& odometry) {
   m_robotFrame = odometry.child_frame_id;
   try {
     m_localizer->addOdometry(readingOf(odometry));
-  } catch (const polemcl::Error& error) {
-    RCLCPP_ERROR_THROTTLE(get_logger(), *get_clock(), kWarningEvery, "%s", error.what());
+  } catch (const std::exception& error) {
+    RCLCPP_ERROR_THROTTLE(get_logger(), m_steadyClock, kWarningEvery, "%s", error.what());
   }
   localizeWaiting();
 }
@@ -214,7 +224,7 @@ void LocalizerNode::take(const StartPose& start) {
   const polemcl::PoseWithCovariance guess = guessOf(start);
   try {
     m_localizer->start(guess.mean, radiusOf(guess.covariance), headingOf(guess.covariance));
-  } catch (const polemcl::Error& error) {
+  } catch (const std::exception& error) {
     RCLCPP_ERROR(get_logger(), "initialpose: %s", error.what());
   }
 }
@@ -228,25 +238,28 @@ void LocalizerNode::searchEverywhere(const Trigger::Request&, Trigger::Response&
 void LocalizerNode::localizeWaiting() {
   while (!m_waiting.empty()) {
     const Cloud::ConstSharedPtr cloud = m_waiting.front();
-    if (!m_localizer->hasOdometry(secondsOf(cloud->header.stamp))) return;
-    const auto T_robot_lidar = poseOnRobot(cloud->header);
-    if (!T_robot_lidar) return;
-    m_waiting.pop_front();
     try {
+      const auto T_robot_lidar = poseOnRobot(cloud->header);
+      if (!T_robot_lidar) return;
       localize(*cloud, *T_robot_lidar);
-    } catch (const polemcl::Error& error) {
-      RCLCPP_ERROR_THROTTLE(get_logger(), *get_clock(), kWarningEvery, "%s", error.what());
-      m_diagnostics->publish(failureOf(error.what(), cloud->header));
+    } catch (const std::exception& error) {
+      refuse(cloud->header, error.what());
     }
+    m_waiting.pop_front();
   }
 }
 
-std::optional<Eigen::Isometry3d> LocalizerNode::poseOnRobot(
-    const std_msgs::msg::Header& lidar) const {
+std::optional<Eigen::Isometry3d> LocalizerNode::poseOnRobot(const std_msgs::msg::Header& lidar) {
+  m_lack = "no odometry of its time came";
+  if (!m_localizer->hasOdometry(secondsOf(lidar.stamp))) return std::nullopt;
   if (lidar.frame_id == m_robotFrame) return Eigen::Isometry3d::Identity();
-  const tf2::TimePoint time = tf2_ros::fromMsg(lidar.stamp);
-  if (!m_transforms->canTransform(m_robotFrame, lidar.frame_id, time)) return std::nullopt;
-  return isometryOf(m_transforms->lookupTransform(m_robotFrame, lidar.frame_id, time).transform);
+  try {
+    const tf2::TimePoint time = tf2_ros::fromMsg(lidar.stamp);
+    return isometryOf(m_transforms->lookupTransform(m_robotFrame, lidar.frame_id, time).transform);
+  } catch (const tf2::TransformException& error) {
+    m_lack = error.what();
+    return std::nullopt;
+  }
 }
 
 void LocalizerNode::localize(const Cloud& cloud, const Eigen::Isometry3d& T_robot_lidar) {

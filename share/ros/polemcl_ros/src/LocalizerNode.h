@@ -55,9 +55,13 @@ class LocalizerNode : public rclcpp_lifecycle::LifecycleNode {
   void take(const StartPose& start);
   void searchEverywhere(const Trigger::Request& request, Trigger::Response& response);
 
+  /// \brief Logs it now and then, and says it on /diagnostics.
+  void refuse(const std_msgs::msg::Header& scan, const std::string& why);
   /// \brief Localizes the scans whose odometry and sensor pose are there.
   void localizeWaiting();
-  std::optional<Eigen::Isometry3d> poseOnRobot(const std_msgs::msg::Header& lidar) const;
+  /// \brief Pose of the LiDAR on the robot at the time of a scan, m. Sets `m_lack`.
+  /// \return Nothing while odometry or transform of that time are missing.
+  std::optional<Eigen::Isometry3d> poseOnRobot(const std_msgs::msg::Header& lidar);
   void localize(const Cloud& cloud, const Eigen::Isometry3d& T_robot_lidar);
   /// \brief Learns how the LiDAR turns; a timing that a later scan refutes goes out of use.
   void learnTiming(const polemcl::io::TimedCloud& scan);
@@ -67,11 +71,14 @@ class LocalizerNode : public rclcpp_lifecycle::LifecycleNode {
   std::string m_mapFrame, m_odometryFrame, m_robotFrame;
   double m_tolerance = 0;  ///< for which the transform is valid after its scan, s
   std::deque<Cloud::ConstSharedPtr> m_waiting;  ///< for odometry of their time
+  std::string m_lack;                           ///< what the first of them waits for
   bool m_learnsTiming = false;           ///< how the LiDAR turns: neither stated nor given up
   polemcl::io::TimingEstimate m_timing;  ///< what the scans so far tell
   std::string m_timingNote;              ///< as logged
   std::size_t m_scans = 0;               ///< so far
 
+  rclcpp::Clock m_steadyClock{
+      RCL_STEADY_TIME};  ///< for warnings now and then: simulated time jumps
   std::unique_ptr<tf2_ros::Buffer> m_transforms;
   std::unique_ptr<tf2_ros::TransformListener> m_listener;
   std::unique_ptr<tf2_ros::TransformBroadcaster> m_broadcaster;
