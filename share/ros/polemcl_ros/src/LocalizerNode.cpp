@@ -20,6 +20,8 @@ constexpr std::size_t kMostWaiting = 50;
 /// After the first scans, each of this number tells whether the LiDAR turns as was learnt.
 constexpr std::size_t kTimingEvery = 20;
 constexpr int kWarningEvery = 5000;  // ms
+/// The frame of a robot whose odometry does not name it, as of many drivers.
+constexpr const char* kDefaultRobotFrame = "base_link";
 
 /// Parameters of the INI file have names that nobody can declare beforehand.
 rclcpp::NodeOptions withAllParameters(rclcpp::NodeOptions options) {
@@ -180,6 +182,8 @@ void LocalizerNode::release() {
   m_listener.reset();
   m_transforms.reset();
   m_waiting.clear();
+  m_odometryFrame.clear();
+  m_robotFrame.clear();
   m_timing = {};
   m_timingNote.clear();
   m_scans = 0;
@@ -205,14 +209,30 @@ void LocalizerNode::refuse(const std_msgs::msg::Header& scan, const std::string&
 }
 
 void LocalizerNode::take(const Odometry& odometry) {
-  m_odometryFrame = odometry.header.frame_id;
-  m_robotFrame = odometry.child_frame_id;
   try {
-    m_localizer->addOdometry(readingOf(odometry));
+    const polemcl::OdometryReading reading = readingOf(odometry);
+    takeFrames(odometry);
+    m_localizer->addOdometry(reading);
   } catch (const std::exception& error) {
-    RCLCPP_ERROR_THROTTLE(get_logger(), m_steadyClock, kWarningEvery, "%s", error.what());
+    RCLCPP_ERROR_THROTTLE(get_logger(), m_steadyClock, kWarningEvery, "%s: %s",
+                          m_odometry->get_topic_name(), error.what());
   }
   localizeWaiting();
+}
+
+void LocalizerNode::takeFrames(const Odometry& odometry) {
+  const std::string& parent = odometry.header.frame_id;
+  const std::string& child = odometry.child_frame_id;
+  const std::string robot = child.empty() ? kDefaultRobotFrame : child;
+  if (parent.empty() || parent == m_mapFrame || parent == robot)
+    throw polemcl::Error("its frame_id is \"" + parent +
+                         "\"; a frame of its own is needed, other than the map (" + m_mapFrame +
+                         ") and the robot (" + robot + ")");
+  if (!m_robotFrame.empty() && (robot != m_robotFrame || parent != m_odometryFrame))
+    throw polemcl::Error("it goes from " + parent + " to " + robot + ", before from " +
+                         m_odometryFrame + " to " + m_robotFrame + "; one odometry is allowed");
+  m_odometryFrame = parent;
+  m_robotFrame = robot;
 }
 
 void LocalizerNode::take(const StartPose& start) {
@@ -221,8 +241,8 @@ void LocalizerNode::take(const StartPose& start) {
                  start.header.frame_id.c_str(), m_mapFrame.c_str());
     return;
   }
-  const polemcl::PoseWithCovariance guess = guessOf(start);
   try {
+    const polemcl::PoseWithCovariance guess = guessOf(start);
     m_localizer->start(guess.mean, radiusOf(guess.covariance), headingOf(guess.covariance));
   } catch (const std::exception& error) {
     RCLCPP_ERROR(get_logger(), "initialpose: %s", error.what());
@@ -253,6 +273,10 @@ std::optional<Eigen::Isometry3d> LocalizerNode::poseOnRobot(const std_msgs::msg:
   m_lack = "no odometry of its time came";
   if (!m_localizer->hasOdometry(secondsOf(lidar.stamp))) return std::nullopt;
   if (lidar.frame_id == m_robotFrame) return Eigen::Isometry3d::Identity();
+  if (lidar.frame_id == m_odometryFrame || lidar.frame_id == m_mapFrame)
+    throw polemcl::Error("these clouds are in " + lidar.frame_id +
+                         ", the frame of the odometry or of the map, so they were moved; take the "
+                         "topic of the LiDAR's driver");
   try {
     const tf2::TimePoint time = tf2_ros::fromMsg(lidar.stamp);
     return isometryOf(m_transforms->lookupTransform(m_robotFrame, lidar.frame_id, time).transform);

@@ -55,12 +55,16 @@ class LocalizerNode : public rclcpp_lifecycle::LifecycleNode {
   void take(const StartPose& start);
   void searchEverywhere(const Trigger::Request& request, Trigger::Response& response);
 
+  /// \brief Takes the frames of the odometry and the robot. \throws Error when they change, or are
+  /// none for a transform from the map to the odometry.
+  void takeFrames(const Odometry& odometry);
   /// \brief Logs it now and then, and says it on /diagnostics.
   void refuse(const std_msgs::msg::Header& scan, const std::string& why);
   /// \brief Localizes the scans whose odometry and sensor pose are there.
   void localizeWaiting();
   /// \brief Pose of the LiDAR on the robot at the time of a scan, m. Sets `m_lack`.
   /// \return Nothing while odometry or transform of that time are missing.
+  /// \throws Error when the clouds are in the frame of the odometry or of the map.
   std::optional<Eigen::Isometry3d> poseOnRobot(const std_msgs::msg::Header& lidar);
   void localize(const Cloud& cloud, const Eigen::Isometry3d& T_robot_lidar);
   /// \brief Learns how the LiDAR turns; a timing that a later scan refutes goes out of use.

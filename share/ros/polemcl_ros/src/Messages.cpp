@@ -85,8 +85,15 @@ double secondsOf(const builtin_interfaces::msg::Time& stamp) {
 
 polemcl::Pose2D planar(const geometry_msgs::msg::Pose& pose) {
   const auto& q = pose.orientation;
-  const double yaw = std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
-  return {pose.position.x, pose.position.y, yaw};
+  const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
+  if (!(std::abs(rotation.norm() - 1) < 0.01))
+    throw polemcl::Error("the quaternion of the pose has length " +
+                         std::to_string(rotation.norm()) + "; 1 is expected");
+  const Eigen::Matrix3d axes = rotation.normalized().toRotationMatrix();
+  if (!(axes(2, 2) > 0))
+    throw polemcl::Error(
+        "the z axis of the pose points down; a frame with x ahead and z up is expected");
+  return {pose.position.x, pose.position.y, std::atan2(axes(1, 0), axes(0, 0))};
 }
 
 Eigen::Isometry3d isometryOf(const geometry_msgs::msg::Transform& transform) {

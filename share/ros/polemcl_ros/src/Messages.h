@@ -18,14 +18,16 @@ namespace polemcl_ros {
 
 /// \brief A stamp in s.
 double secondsOf(const builtin_interfaces::msg::Time& stamp);
-/// \brief The yaw and place of a pose.
+/// \brief The yaw and place of a pose, rad and m.
+/// \throws Error when its quaternion is not of unit length (1 % off at most), or z points down.
 polemcl::Pose2D planar(const geometry_msgs::msg::Pose& pose);
 Eigen::Isometry3d isometryOf(const geometry_msgs::msg::Transform& transform);
 
 /// \brief The cloud; its bytes stay in the message.
 polemcl::io::PackedCloud packedOf(const sensor_msgs::msg::PointCloud2& message);
+/// \throws Error as planar().
 polemcl::OdometryReading readingOf(const nav_msgs::msg::Odometry& message);
-/// \brief A pose of an operator with its covariance of (x, y, yaw).
+/// \brief A pose of an operator with its covariance of (x, y, yaw). \throws Error as planar().
 polemcl::PoseWithCovariance guessOf(const geometry_msgs::msg::PoseWithCovarianceStamped& message);
 
 geometry_msgs::msg::PoseWithCovarianceStamped poseMessage(
