@@ -55,6 +55,16 @@ std::optional<double> headingOf(const Eigen::Matrix3d& covariance) {
   return variance > 0 ? std::optional(std::min(M_PI, 2 * std::sqrt(variance))) : std::nullopt;
 }
 
+/// s. \throws Error unless it is in [0, 10].
+double toleranceOf(const rclcpp::Parameter& parameter) {
+  const bool isWhole = parameter.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER;
+  const double seconds = isWhole ? static_cast<double>(parameter.as_int()) : parameter.as_double();
+  if (!(seconds >= 0 && seconds <= 10))
+    throw polemcl::Error(parameter.get_name() + " = " + std::to_string(seconds) +
+                         ": 0 to 10 s are allowed");
+  return seconds;
+}
+
 rclcpp::SubscriptionOptions adjustable() {
   rclcpp::SubscriptionOptions options;
   options.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
@@ -71,7 +81,7 @@ LocalizerNode::LocalizerNode(const rclcpp::NodeOptions& options)
   declare("settings", std::string());
   declare("map", std::string());
   declare("map_frame", std::string("map"));
-  declare("transform_tolerance_s", 0.1);
+  declare("transform_tolerance_s", 0.5);
 }
 
 std::vector<std::string> LocalizerNode::assignments() const {
@@ -105,13 +115,10 @@ void LocalizerNode::setUp() {
   m_learnsTiming = settings.sensor().timing.turn == polemcl::Turn::automatic;
   if (!m_localizer->isStarted()) m_localizer->startAnywhere();
   m_mapFrame = get_parameter("map_frame").as_string();
-  const rclcpp::Parameter tolerance = get_parameter("transform_tolerance_s");
-  const bool isWhole = tolerance.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER;
-  m_tolerance = isWhole ? static_cast<double>(tolerance.as_int()) : tolerance.as_double();
+  m_tolerance = toleranceOf(get_parameter("transform_tolerance_s"));
   advertise();
-  std_msgs::msg::Header header;
+  std_msgs::msg::Header header;  // without a stamp: valid at all times
   header.frame_id = m_mapFrame;
-  header.stamp = now();
   polemcl::CPoleMap poles;
   poles.loadFromPoleMapFile(map);
   m_mapPoles->on_activate();  // kept for whoever comes later
@@ -146,16 +153,18 @@ void LocalizerNode::subscribe() {
 }
 
 LocalizerNode::CallbackReturn LocalizerNode::on_activate(const rclcpp_lifecycle::State& state) {
-  subscribe();
+  try {
+    subscribe();
+  } catch (const std::exception& error) {  // such as a word of qos_overrides that is none
+    RCLCPP_ERROR(get_logger(), "%s", error.what());
+    unsubscribe();
+    return CallbackReturn::FAILURE;
+  }
   return LifecycleNode::on_activate(state);  // and the publishers
 }
 
 LocalizerNode::CallbackReturn LocalizerNode::on_deactivate(const rclcpp_lifecycle::State& state) {
-  m_clouds.reset();
-  m_odometry.reset();
-  m_starts.reset();
-  m_search.reset();
-  m_waiting.clear();
+  unsubscribe();
   return LifecycleNode::on_deactivate(state);
 }
 
@@ -169,11 +178,16 @@ LocalizerNode::CallbackReturn LocalizerNode::on_shutdown(const rclcpp_lifecycle:
   return CallbackReturn::SUCCESS;
 }
 
-void LocalizerNode::release() {
+void LocalizerNode::unsubscribe() {
   m_clouds.reset();
   m_odometry.reset();
   m_starts.reset();
   m_search.reset();
+  m_waiting.clear();
+}
+
+void LocalizerNode::release() {
+  unsubscribe();
   m_pose.reset();
   m_diagnostics.reset();
   m_poles.reset();
@@ -181,7 +195,6 @@ void LocalizerNode::release() {
   m_broadcaster.reset();
   m_listener.reset();
   m_transforms.reset();
-  m_waiting.clear();
   m_odometryFrame.clear();
   m_robotFrame.clear();
   m_timing = {};

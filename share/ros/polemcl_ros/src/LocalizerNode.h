@@ -47,6 +47,7 @@ class LocalizerNode : public rclcpp_lifecycle::LifecycleNode {
   void release();
   void advertise();
   void subscribe();
+  void unsubscribe();
   /// \brief The parameters that are keys of the INI file, as `section.key=value`.
   std::vector<std::string> assignments() const;
 
