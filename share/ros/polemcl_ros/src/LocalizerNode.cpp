@@ -3,6 +3,8 @@
 #include <tf2/exceptions.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sstream>
@@ -22,6 +24,11 @@ constexpr std::size_t kTimingEvery = 20;
 constexpr int kWarningEvery = 5000;  // ms
 /// The frame of a robot whose odometry does not name it, as of many drivers.
 constexpr const char* kDefaultRobotFrame = "base_link";
+
+/// Names without a dot: those of this node, and those that rclcpp declares.
+constexpr std::array<const char*, 6> kParameters{"settings",     "map",
+                                                 "map_frame",    "transform_tolerance_s",
+                                                 "use_sim_time", "start_type_description_service"};
 
 /// Parameters of the INI file have names that nobody can declare beforehand.
 rclcpp::NodeOptions withAllParameters(rclcpp::NodeOptions options) {
@@ -87,8 +94,11 @@ LocalizerNode::LocalizerNode(const rclcpp::NodeOptions& options)
 std::vector<std::string> LocalizerNode::assignments() const {
   std::vector<std::string> result;
   for (const std::string& name : list_parameters({}, 0).names) {
-    const bool isOfRos = name.find('.') == std::string::npos || name.rfind("qos_overrides", 0) == 0;
-    if (!isOfRos) result.push_back(name + "=" + textOf(get_parameter(name)));
+    if (name.rfind("qos_overrides", 0) == 0) continue;
+    if (name.find('.') != std::string::npos)
+      result.push_back(name + "=" + textOf(get_parameter(name)));
+    else if (std::find(kParameters.begin(), kParameters.end(), name) == kParameters.end())
+      RCLCPP_WARN(get_logger(), "the parameter %s is not known and not used", name.c_str());
   }
   return result;
 }
@@ -330,7 +340,8 @@ void LocalizerNode::publish(const polemcl::LocalizationUpdate& update,
   header.frame_id = m_robotFrame;
   m_poles->publish(markersOf(m_localizer->poles(), header));
   header.frame_id = m_mapFrame;
-  m_diagnostics->publish(diagnosticsOf(update, header, lidar.frame_id));
+  m_diagnostics->publish(
+      diagnosticsOf(update, m_localizer->odometryJumps(), header, lidar.frame_id));
   if (!update.estimate) return;
   geometry_msgs::msg::TransformStamped transform;
   transform.header.stamp = rclcpp::Time(lidar.stamp) + rclcpp::Duration::from_seconds(m_tolerance);

@@ -1,7 +1,9 @@
 #include "Messages.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace polemcl_ros {
 namespace {
@@ -157,6 +159,7 @@ geometry_msgs::msg::Transform transformOf(const polemcl::Pose2D& pose) {
 }
 
 diagnostic_msgs::msg::DiagnosticArray diagnosticsOf(const polemcl::LocalizationUpdate& update,
+                                                    std::size_t jumps,
                                                     const std_msgs::msg::Header& header,
                                                     const std::string& sensor) {
   const polemcl::Health& health = update.health;
@@ -181,6 +184,7 @@ diagnostic_msgs::msg::DiagnosticArray diagnosticsOf(const polemcl::LocalizationU
   add("spread of the heading, rad", health.spreadHeading);
   add("share of the best place", health.modeShare);
   add("effective particles", health.effectiveParticles);
+  add("jumps of the odometry so far", static_cast<double>(jumps));
   return arrayOf(header, std::move(status));
 }
 
@@ -188,6 +192,7 @@ diagnostic_msgs::msg::DiagnosticArray failureOf(const std::string& what,
                                                 const std_msgs::msg::Header& header) {
   diagnostic_msgs::msg::DiagnosticStatus status;
   status.level = diagnostic_msgs::msg::DiagnosticStatus::ERROR;
+  status.hardware_id = header.frame_id;
   status.message = what;
   return arrayOf(header, std::move(status));
 }

@@ -3,6 +3,7 @@
 /// \brief From messages of ROS to what polemcl takes, and back.
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
 #include <geometry_msgs/msg/transform_stamped.hpp>
@@ -34,11 +35,12 @@ geometry_msgs::msg::PoseWithCovarianceStamped poseMessage(
     const std_msgs::msg::Header& header, const polemcl::PoseWithCovariance& estimate);
 /// \brief Without header and child.
 geometry_msgs::msg::Transform transformOf(const polemcl::Pose2D& pose);
-/// \brief `sensor` names the LiDAR.
+/// \brief `sensor` names the LiDAR. \param jumps Localizer::odometryJumps().
 diagnostic_msgs::msg::DiagnosticArray diagnosticsOf(const polemcl::LocalizationUpdate& update,
+                                                    std::size_t jumps,
                                                     const std_msgs::msg::Header& header,
                                                     const std::string& sensor);
-/// \brief What went wrong with a scan.
+/// \brief What went wrong with a scan. \param header That of its cloud.
 diagnostic_msgs::msg::DiagnosticArray failureOf(const std::string& what,
                                                 const std_msgs::msg::Header& header);
 

@@ -22,6 +22,7 @@
 #include <stdexcept>
 #include <string>
 #include <tf2_msgs/msg/tf_message.hpp>
+#include <thread>
 #include <vector>
 #include <visualization_msgs/msg/marker_array.hpp>
 
