@@ -2,7 +2,6 @@
 #include "io/dataset/Rosbag2.h"
 #include "io/file/Bytes.h"
 #include "io/rosbag/PointCloud2.h"
-#include "io/rosbag/PointTimes.h"
 #include "io/rosbag/RosMessages.h"
 #include "support/McapFiles.h"
 #include "support/RosBags.h"

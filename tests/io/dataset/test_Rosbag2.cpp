@@ -303,8 +303,14 @@ TEST_F(Rosbag2Test, TheTimingComesFromThePoints) {
   EXPECT_EQ(folder.timing.turn, Turn::clockwise);
   EXPECT_EQ(folder.timing.stamp, 1);
   expectNote(folder, "turns of 0.1 s, clockwise");
+  for (const std::string& note : folder.notes) EXPECT_EQ(note.find("--turn"), std::string::npos);
   options.readsTiming = false;
   EXPECT_EQ(load().timing.turn, Turn::automatic);
+}
+
+TEST_F(Rosbag2Test, WithoutTimesTheTimingCanBeStated) {
+  writeDrive(3, {});
+  expectNote(load(), "no times of their own, or one for all; --turn states it");
 }
 
 TEST_F(Rosbag2Test, SeveralTopicsMustBeChosen) {

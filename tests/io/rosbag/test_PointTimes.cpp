@@ -1,4 +1,4 @@
-#include "io/rosbag/PointTimes.h"
+#include <polemcl/io/rosbag/PackedCloud.h>
 #include "support/IoFiles.h"
 #include "support/RosBags.h"
 
@@ -12,6 +12,18 @@ namespace {
 
 RosCloud turn(int sign, double cut, double begin, double seconds = 0.1) {
   return decodeCloud(turningCloud(100, sign, cut, begin, seconds).message(), "", true);
+}
+
+/// The scan with its points in another order than that of measuring.
+RosCloud mixed(const RosCloud& ordered) {
+  RosCloud result = ordered;
+  for (std::size_t i = 0; i < result.cloud.size(); ++i) {
+    const std::size_t from = i * 7919 % result.cloud.size();
+    result.cloud.x[i] = ordered.cloud.x[from];
+    result.cloud.y[i] = ordered.cloud.y[from];
+    result.offsets[i] = ordered.offsets[from];
+  }
+  return result;
 }
 
 TimingEstimate estimateOf(const std::vector<RosCloud>& scans) {
@@ -72,7 +84,7 @@ TEST(PointTimes, SaysWhyNothingIsFound) {
   const auto expectNone = [](const std::vector<RosCloud>& scans, const std::string& why) {
     const auto estimate = estimateOf(scans);
     EXPECT_EQ(estimate.timing().turn, Turn::automatic);
-    expectIn(estimate.note(), why, "--turn states it");
+    expectIn(estimate.note(), "when points were measured is not known: ", why);
   };
   RosCloud scan = turn(1, 0, 0);
   const RosCloud good = scan;
@@ -87,15 +99,8 @@ TEST(PointTimes, SaysWhyNothingIsFound) {
   for (std::size_t i = 0; i < scan.offsets.size(); ++i)
     scan.offsets[i] = 0.1 * static_cast<double>(i * 7919 % 1800) / 1800;
   expectNone({good, scan}, "do not follow their azimuths");
-  const RosCloud ordered = turn(1, 1, 0);
-  RosCloud mixed = ordered;
-  for (std::size_t i = 0; i < mixed.cloud.size(); ++i) {
-    const std::size_t from = i * 7919 % mixed.cloud.size();
-    mixed.cloud.x[i] = ordered.cloud.x[from];
-    mixed.cloud.y[i] = ordered.cloud.y[from];
-    mixed.offsets[i] = ordered.offsets[from];
-  }
-  expectNone({good, mixed}, "begin at different azimuths, and their points are not in the order");
+  expectNone({good, mixed(turn(1, 1, 0))},
+             "begin at different azimuths, and their points are not in the order");
   expectNone({good, turn(-1, 0, 0)}, "turn in different ways");
   expectNone({turn(1, 0, 0, 100)}, "turns of 100 s; uint32 in ns, float32 and float64 in s");
   expectNone({turn(1, 0, 0, 0.0001)}, "turns of 0.0001 s");
@@ -118,14 +123,30 @@ TEST(PointTimes, ScansThatBeginAtAMovingAzimuth) {
   expectIn(estimate.note(), "clockwise, each from its first point on, stamped at 0 of the turn");
 }
 
-TEST(PointTimes, AreToldOfScansInHand) {
-  const std::vector<TimedCloud> scans(5, turn(1, 0, 0));
-  const auto timing = timingOf(scans);
-  ASSERT_TRUE(timing);
-  EXPECT_EQ(timing->turn, Turn::counterclockwise);
-  EXPECT_NEAR(timing->seconds, 0.1, 0.001);
-  EXPECT_FALSE(timingOf({}));
-  EXPECT_FALSE(timingOf({TimedCloud{scans[0].cloud, {}}}));
+// Points that are not in the order of measuring, and a cut that moves slowly.
+TEST(PointTimes, ALaterScanRefutesATiming) {
+  TimingEstimate estimate;
+  for (int i = 0; i < 5; ++i) estimate.add(mixed(turn(-1, 2 - 0.02 * i, 0)));
+  EXPECT_TRUE(estimate.timing().known());
+  EXPECT_FALSE(estimate.timing().movingCut);
+  estimate.add(mixed(turn(-1, 2 - 0.02 * 25, 0)));
+  EXPECT_EQ(estimate.timing().turn, Turn::automatic);
+  expectIn(estimate.note(), "begin at different azimuths", "not in the order of measuring");
+  for (int i = 0; i < 5; ++i) estimate.add(mixed(turn(-1, 2, 0)));
+  EXPECT_FALSE(estimate.timing().known());  // it stays refuted
+}
+
+TEST(PointTimes, WhatTheFirstScansDoNotTellLaterOnesDoNot) {
+  TimingEstimate estimate;
+  RosCloud untimed = turn(1, 0, 0);
+  untimed.offsets.clear();
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_FALSE(estimate.complete());
+    estimate.add(untimed);
+  }
+  EXPECT_TRUE(estimate.complete());
+  estimate.add(turn(1, 0, 0));
+  EXPECT_FALSE(estimate.timing().known());
 }
 
 TEST(PointTimes, PartialScansAreNotUsed) {

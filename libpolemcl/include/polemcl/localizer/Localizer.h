@@ -105,8 +105,8 @@ class POLEMCL_EXPORT Localizer {
   void addOdometry(const OdometryReading& reading);
   /// \brief Whether there is odometry at `time` or later: the scan of that time can be taken.
   bool hasOdometry(double time) const;
-  /// \brief What the recording says of the measuring times of the points, see io::timingOf(); used
-  /// if `[sensor] turn = auto`.
+  /// \brief What the recording says of the measuring times of the points, see io::TimingEstimate;
+  /// used if `[sensor] turn = auto`. A later one replaces it; ScanTiming() takes it back.
   void setRecordedTiming(const ScanTiming& timing);
   /// \brief The next scan; its motion is that of the odometry, interpolated at its time.
   /// \param T_robot_lidar Pose of the frame of the points in the robot's, m.

@@ -9,7 +9,6 @@
 #include "io/rosbag/Bag.h"
 #include "io/rosbag/FrameTree.h"
 #include "io/rosbag/PointCloud2.h"
-#include "io/rosbag/PointTimes.h"
 #include "io/rosbag/RosMessages.h"
 
 namespace polemcl::io {
@@ -147,7 +146,7 @@ void estimateTiming(const Bag& bag, std::size_t topic, ScanFolder& folder) {
   for (; i < folder.scans.size(); i += step)
     estimate.add(readScan(bag, topic, folder.scans[i], true));
   folder.timing = estimate.timing();
-  folder.notes.push_back(estimate.note());
+  folder.notes.push_back(estimate.note() + (folder.timing.known() ? "" : "; --turn states it"));
 }
 
 void findSensorPose(const FrameTree& frames, const std::string& robot, const std::string& sensor,

@@ -1,10 +1,10 @@
-#include "io/rosbag/PointTimes.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
+#include <optional>
 
+#include <polemcl/io/rosbag/PackedCloud.h>
 #include "core/common/Angles.h"
 #include "core/common/Statistics.h"
 #include "core/sensor/PointOrder.h"
@@ -103,9 +103,17 @@ double medianOf(const std::vector<double>& values) {
   return *quantile(values, 0.5);
 }
 
-}  // namespace
+/// One scan: azimuth = atStamp + rate · time.
+struct Fit {
+  double rate = 0;     ///< rad/s, above 0: counter-clockwise
+  double atStamp = 0;  ///< azimuth at the time stamp, rad
+  double middle = 0;   ///< from the stamp to the middle of the turn, s
+};
 
-std::optional<TimingEstimate::Fit> TimingEstimate::fit(const TimedCloud& scan) {
+/// The azimuth of each point is fitted as a line over its time, in both directions; the better one
+/// is the direction of the turn. Its slope gives the duration. The first and the last time of a
+/// scan give the moment of the stamp within the turn; the azimuth then is the cut.
+std::optional<Fit> fitOf(const TimedCloud& scan) {
   TimedPoints samples = sampled(scan);
   const double begin = *quantile(scan.offsets, kTails), end = *quantile(scan.offsets, 1 - kTails);
   const double middle = (begin + end) / 2;  // sums of large times would lose digits
@@ -123,39 +131,52 @@ std::optional<TimingEstimate::Fit> TimingEstimate::fit(const TimedCloud& scan) {
   return Fit{rate, atMiddle - rate * middle, middle};
 }
 
-void TimingEstimate::add(const TimedCloud& scan) {
+bool beginElsewhere(const Fit& a, const Fit& b) {
+  return std::abs(wrapAngle(a.atStamp - b.atStamp)) > kMostSpread;
+}
+
+}  // namespace
+
+struct TimingEstimate::Impl {
+  void add(const TimedCloud& scan);
+  bool complete() const;
+  std::string problem() const;
+  ScanTiming timing() const;
+
+  std::vector<Fit> fits;    ///< of the first scans
+  std::size_t scans = 0;    ///< of which these are
+  std::size_t untimed = 0;  ///< points without times, or all with the same one
+  std::size_t partial = 0;  ///< not a full turn
+  bool cutMoves = false;    ///< some scan begins elsewhere than the first one
+  bool inOrder = true;      ///< the points of all fits are in the order of measuring
+};
+
+void TimingEstimate::Impl::add(const TimedCloud& scan) {
   const bool isLater = complete();
-  if (!isLater) ++m_scans;
+  if (!isLater) ++scans;
   const auto [first, last] = std::minmax_element(scan.offsets.begin(), scan.offsets.end());
   if (scan.offsets.empty() || *first == *last) {
-    if (!isLater) ++m_untimed;
+    if (!isLater) ++untimed;
   } else if (!isFullTurn(scan.cloud)) {
-    if (!isLater) ++m_partial;
-  } else if (const auto found = fit(scan)) {
-    (isLater ? m_later : m_fits).push_back(*found);
-    m_inOrder = m_inOrder && pointOrder(scan.cloud.view());
+    if (!isLater) ++partial;
+  } else if (const auto found = fitOf(scan)) {
+    if (!isLater) fits.push_back(*found);
+    cutMoves = cutMoves || (!fits.empty() && beginElsewhere(*found, fits.front()));
+    inOrder = inOrder && pointOrder(scan.cloud.view());
   }
 }
 
-bool TimingEstimate::complete() const {
-  return m_scans - m_untimed - m_partial >= kEnoughScans || m_scans >= kMostScans;
+bool TimingEstimate::Impl::complete() const {
+  return scans - untimed - partial >= kEnoughScans || scans >= kMostScans;
 }
 
-bool TimingEstimate::cutMoves() const {
-  const auto isElsewhere = [this](const Fit& fit) {
-    return std::abs(wrapAngle(fit.atStamp - m_fits.front().atStamp)) > kMostSpread;
-  };
-  return std::any_of(m_fits.begin(), m_fits.end(), isElsewhere) ||
-         std::any_of(m_later.begin(), m_later.end(), isElsewhere);
-}
-
-std::string TimingEstimate::problem() const {
-  if (m_untimed == m_scans) return "the points have no times of their own, or one for all";
-  if (m_untimed + m_partial == m_scans) return "no scan is a full turn";
-  if (m_fits.size() < m_scans - m_untimed - m_partial)
+std::string TimingEstimate::Impl::problem() const {
+  if (untimed == scans) return "the points have no times of their own, or one for all";
+  if (untimed + partial == scans) return "no scan is a full turn";
+  if (fits.size() < scans - untimed - partial)
     return "the times of the points do not follow their azimuths";
-  const Fit& reference = m_fits.front();
-  for (const Fit& fit : m_fits) {
+  const Fit& reference = fits.front();
+  for (const Fit& fit : fits) {
     const double seconds = 2 * M_PI / std::abs(fit.rate);
     if (seconds < kShortestTurn || seconds > kLongestTurn)
       return "the times of the points tell turns of " + significant(seconds, 3) +
@@ -166,19 +187,19 @@ std::string TimingEstimate::problem() const {
     if (stamp < -0.5 || stamp > 1.5)
       return "the times of the points are far from the stamps of the scans";
   }
-  if (cutMoves() && !m_inOrder)
+  if (cutMoves && !inOrder)
     return "the scans begin at different azimuths, and their points are not in the order of "
            "measuring";
   return {};
 }
 
-ScanTiming TimingEstimate::timing() const {
+ScanTiming TimingEstimate::Impl::timing() const {
   if (!problem().empty()) return {};
   std::vector<double> rates, middles, azimuths;
-  for (const Fit& fit : m_fits) {
+  for (const Fit& fit : fits) {
     rates.push_back(fit.rate);
     middles.push_back(fit.middle);
-    azimuths.push_back(wrapAngle(fit.atStamp - m_fits.front().atStamp));
+    azimuths.push_back(wrapAngle(fit.atStamp - fits.front().atStamp));
   }
   const double rate = medianOf(rates);
   ScanTiming timing;
@@ -190,16 +211,32 @@ ScanTiming TimingEstimate::timing() const {
   // A stamp outside the turn is one of another clock.
   if (std::abs(timing.stamp - stamp) > kRoundedStamp)
     timing.clock = (timing.stamp - stamp) * timing.seconds;
-  const double atStamp = m_fits.front().atStamp + medianOf(azimuths);
+  const double atStamp = fits.front().atStamp + medianOf(azimuths);
   timing.cut = wrapAngle(atStamp + rate * (timing.clock - timing.stamp * timing.seconds));
-  timing.movingCut = cutMoves();
+  timing.movingCut = cutMoves;
   return timing;
 }
 
+TimingEstimate::TimingEstimate() : m_impl(std::make_unique<Impl>()) {}
+TimingEstimate::TimingEstimate(TimingEstimate&&) noexcept = default;
+TimingEstimate& TimingEstimate::operator=(TimingEstimate&&) noexcept = default;
+TimingEstimate::~TimingEstimate() = default;
+
+void TimingEstimate::add(const TimedCloud& scan) {
+  m_impl->add(scan);
+}
+
+bool TimingEstimate::complete() const {
+  return m_impl->complete();
+}
+
+ScanTiming TimingEstimate::timing() const {
+  return m_impl->timing();
+}
+
 std::string TimingEstimate::note() const {
-  const std::string reason = problem();
-  if (!reason.empty())
-    return "when points were measured is not known: " + reason + "; --turn states it";
+  const std::string reason = m_impl->problem();
+  if (!reason.empty()) return "when points were measured is not known: " + reason;
   const ScanTiming found = timing();
   std::string name;
   for (const auto& [value, text] : turnNames())
@@ -208,13 +245,6 @@ std::string TimingEstimate::note() const {
          (found.movingCut ? ", each from its first point on"
                           : ", cut at " + significant(found.cut / degree, 4) + " deg") +
          ", stamped at " + significant(found.stamp, 3) + " of the turn";
-}
-
-std::optional<ScanTiming> timingOf(const std::vector<TimedCloud>& scans) {
-  TimingEstimate estimate;
-  for (const TimedCloud& scan : scans) estimate.add(scan);
-  const ScanTiming timing = estimate.timing();
-  return timing.known() ? std::optional(timing) : std::nullopt;
 }
 
 }  // namespace polemcl::io

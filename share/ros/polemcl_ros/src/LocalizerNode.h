@@ -47,6 +47,7 @@ class LocalizerNode : public rclcpp_lifecycle::LifecycleNode {
   void release();
   void advertise();
   void subscribe();
+  void unsubscribe();
   /// \brief The parameters that are keys of the INI file, as `section.key=value`.
   std::vector<std::string> assignments() const;
 
@@ -55,20 +56,34 @@ class LocalizerNode : public rclcpp_lifecycle::LifecycleNode {
   void take(const StartPose& start);
   void searchEverywhere(const Trigger::Request& request, Trigger::Response& response);
 
+  /// \brief Takes the frames of the odometry and the robot. \throws Error when they change, or are
+  /// none for a transform from the map to the odometry.
+  void takeFrames(const Odometry& odometry);
+  /// \brief Logs it now and then, and says it on /diagnostics.
+  void refuse(const std_msgs::msg::Header& scan, const std::string& why);
   /// \brief Localizes the scans whose odometry and sensor pose are there.
   void localizeWaiting();
-  std::optional<Eigen::Isometry3d> poseOnRobot(const std_msgs::msg::Header& lidar) const;
+  /// \brief Pose of the LiDAR on the robot at the time of a scan, m. Sets `m_lack`.
+  /// \return Nothing while odometry or transform of that time are missing.
+  /// \throws Error when the clouds are in the frame of the odometry or of the map.
+  std::optional<Eigen::Isometry3d> poseOnRobot(const std_msgs::msg::Header& lidar);
   void localize(const Cloud& cloud, const Eigen::Isometry3d& T_robot_lidar);
-  void learnTiming(polemcl::io::TimedCloud cloud);
+  /// \brief Learns how the LiDAR turns; a timing that a later scan refutes goes out of use.
+  void learnTiming(const polemcl::io::TimedCloud& scan);
   void publish(const polemcl::LocalizationUpdate& update, const std_msgs::msg::Header& lidar);
 
   std::optional<polemcl::Localizer> m_localizer;
   std::string m_mapFrame, m_odometryFrame, m_robotFrame;
   double m_tolerance = 0;  ///< for which the transform is valid after its scan, s
-  std::deque<Cloud::ConstSharedPtr> m_waiting;        ///< for odometry of their time
-  std::vector<polemcl::io::TimedCloud> m_timedScans;  ///< they tell how the LiDAR turns
-  std::size_t m_scans = 0;                            ///< so far
+  std::deque<Cloud::ConstSharedPtr> m_waiting;  ///< for odometry of their time
+  std::string m_lack;                           ///< what the first of them waits for
+  bool m_learnsTiming = false;           ///< how the LiDAR turns: neither stated nor given up
+  polemcl::io::TimingEstimate m_timing;  ///< what the scans so far tell
+  std::string m_timingNote;              ///< as logged
+  std::size_t m_scans = 0;               ///< so far
 
+  rclcpp::Clock m_steadyClock{
+      RCL_STEADY_TIME};  ///< for warnings now and then: simulated time jumps
   std::unique_ptr<tf2_ros::Buffer> m_transforms;
   std::unique_ptr<tf2_ros::TransformListener> m_listener;
   std::unique_ptr<tf2_ros::TransformBroadcaster> m_broadcaster;

@@ -1,7 +1,9 @@
 #include "Messages.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace polemcl_ros {
 namespace {
@@ -85,8 +87,15 @@ double secondsOf(const builtin_interfaces::msg::Time& stamp) {
 
 polemcl::Pose2D planar(const geometry_msgs::msg::Pose& pose) {
   const auto& q = pose.orientation;
-  const double yaw = std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
-  return {pose.position.x, pose.position.y, yaw};
+  const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
+  if (!(std::abs(rotation.norm() - 1) < 0.01))
+    throw polemcl::Error("the quaternion of the pose has length " +
+                         std::to_string(rotation.norm()) + "; 1 is expected");
+  const Eigen::Matrix3d axes = rotation.normalized().toRotationMatrix();
+  if (!(axes(2, 2) > 0))
+    throw polemcl::Error(
+        "the z axis of the pose points down; a frame with x ahead and z up is expected");
+  return {pose.position.x, pose.position.y, std::atan2(axes(1, 0), axes(0, 0))};
 }
 
 Eigen::Isometry3d isometryOf(const geometry_msgs::msg::Transform& transform) {
@@ -150,6 +159,7 @@ geometry_msgs::msg::Transform transformOf(const polemcl::Pose2D& pose) {
 }
 
 diagnostic_msgs::msg::DiagnosticArray diagnosticsOf(const polemcl::LocalizationUpdate& update,
+                                                    std::size_t jumps,
                                                     const std_msgs::msg::Header& header,
                                                     const std::string& sensor) {
   const polemcl::Health& health = update.health;
@@ -174,6 +184,7 @@ diagnostic_msgs::msg::DiagnosticArray diagnosticsOf(const polemcl::LocalizationU
   add("spread of the heading, rad", health.spreadHeading);
   add("share of the best place", health.modeShare);
   add("effective particles", health.effectiveParticles);
+  add("jumps of the odometry so far", static_cast<double>(jumps));
   return arrayOf(header, std::move(status));
 }
 
@@ -181,6 +192,7 @@ diagnostic_msgs::msg::DiagnosticArray failureOf(const std::string& what,
                                                 const std_msgs::msg::Header& header) {
   diagnostic_msgs::msg::DiagnosticStatus status;
   status.level = diagnostic_msgs::msg::DiagnosticStatus::ERROR;
+  status.hardware_id = header.frame_id;
   status.message = what;
   return arrayOf(header, std::move(status));
 }

@@ -22,6 +22,7 @@
 #include <stdexcept>
 #include <string>
 #include <tf2_msgs/msg/tf_message.hpp>
+#include <thread>
 #include <vector>
 #include <visualization_msgs/msg/marker_array.hpp>
 
@@ -227,7 +228,7 @@ void Player::write(const char* file) const {
 void Player::checkOutputs() {
   const auto& [time, last] = *m_poses.rbegin();
   waitUntil("the last transform", [&, stamp = time] {
-    return nanoseconds(m_transform.header.stamp) == stamp + 100000000;  // transform_tolerance_s
+    return nanoseconds(m_transform.header.stamp) == stamp + 500000000;  // transform_tolerance_s
   });
   waitUntil("markers of the map", [&] { return m_mapPoles > 0; });
   const auto& pose = last.pose.pose;

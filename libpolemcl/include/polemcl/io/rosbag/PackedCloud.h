@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,10 +53,35 @@ struct TimedCloud {
 POLEMCL_EXPORT TimedCloud unpack(const PackedCloud& packed, const std::string& where,
                                  bool withTimes);
 
-/// \brief How the LiDAR turns, from the times that the points of its scans have.
-/// \param scans The first of a drive; five full turns are enough. More tell whether their begin
-///        moves.
-/// \return Nothing if they do not tell.
-POLEMCL_EXPORT std::optional<ScanTiming> timingOf(const std::vector<TimedCloud>& scans);
+/// \brief Learns how a LiDAR turns, from the times that the points of its scans have. It takes the
+/// first scans of a drive until it is complete, then some of the rest, which tell whether the
+/// azimuth moves at which scans begin.
+///
+/// Keeps a few numbers of the first scans and no points. What was moved from can only be destroyed
+/// or assigned to.
+class POLEMCL_EXPORT TimingEstimate {
+ public:
+  TimingEstimate();
+  TimingEstimate(TimingEstimate&&) noexcept;
+  TimingEstimate& operator=(TimingEstimate&&) noexcept;
+  ~TimingEstimate();
+
+  /// \brief Takes a scan into account if it is a full turn: points in three quarters of all
+  /// directions.
+  void add(const TimedCloud& scan);
+  /// \brief Whether the timing needs no more scans: after five full turns with times, at the latest
+  /// after 20 scans.
+  bool complete() const;
+  /// \brief The timing; medians over the first scans. `automatic` when the points do not tell, or
+  /// scans begin at different azimuths and their points are not in the order of measuring. Once
+  /// complete, a timing that is not known stays so.
+  ScanTiming timing() const;
+  /// \brief Note for the user: what was found, or why nothing was.
+  std::string note() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> m_impl;
+};
 
 }  // namespace polemcl::io
