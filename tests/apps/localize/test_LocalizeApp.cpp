@@ -369,6 +369,17 @@ TEST(LocalizeAppAnywhere, ARunThatFindsNothingIsNoErrorButSaysSo) {
   EXPECT_FALSE(fs::exists(city.folder / "out/run_00_errors.csv"));
 }
 
+TEST_F(LocalizeApp, AGapTooLongForTheOdometryKeepsTheResults) {
+  for (std::size_t i = scans / 2; i < scans; ++i) street.frames[i].time += 60;
+  street.frames[scans / 2].motion->covariance = 400 * Eigen::Matrix3d::Identity();
+  writeRawlog();
+  const auto outcome = run({"--start", "0,0,0,1,5"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string health = readText(out("run_00_health.csv"));
+  EXPECT_EQ(lines(health), scans + 1);
+  EXPECT_NE(health.find("lost,searching"), std::string::npos);
+}
+
 TEST_F(LocalizeApp, RefusesMissingFiles) {
   for (const char* name : {"config.ini", "in.rawlog", "map.polemap", "truth.tum"}) {
     fs::rename(folder / name, folder / "aside");

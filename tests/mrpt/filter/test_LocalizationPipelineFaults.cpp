@@ -201,6 +201,44 @@ TEST_F(PoleLocalizationFaults, AGapOfMinutesIsNamedUntilPolesConfirmThePose) {
   expectOkFrom(updates, gap + 28);
 }
 
+// The motion over the gap says hardly anything: of too great a covariance, or too long.
+TEST_F(PoleLocalizationFaults, AGapTooLongForTheOdometryEndsInASearch) {
+  drive(210);
+  const std::size_t gap = 100;
+  for (std::size_t i = gap; i < frames.size(); ++i) frames[i].time += 30;
+  frames.erase(frames.begin() + gap, frames.begin() + gap + 100);
+  truth.erase(truth.begin() + gap, truth.begin() + gap + 100);
+  const PoseWithCovariance uncertain{{70, 0, 0}, 400 * Eigen::Matrix3d::Identity()};
+  const PoseWithCovariance endless{{20000, 0, 0}, 1e-4 * Eigen::Matrix3d::Identity()};
+  for (const auto& motion : {uncertain, endless}) {
+    frames[gap].motion = motion;
+    const auto updates = run();
+    EXPECT_EQ(updates[gap - 1].health.state, HealthState::ok);
+    EXPECT_FALSE(updates[gap].estimate);
+    EXPECT_EQ(updates[gap].health.reason, HealthReason::searching);
+    EXPECT_EQ(updates[gap].odometryErrors.scale, updates[gap - 1].odometryErrors.scale);
+    expectOkFrom(updates, gap + 60);
+  }
+}
+
+TEST_F(PoleLocalizationFaults, WithoutRecoveryAGapTooLongForTheOdometryIsLost) {
+  drive(70);
+  frames[50].motion->covariance = 400 * Eigen::Matrix3d::Identity();
+  for (std::size_t i = 50; i < frames.size(); ++i) frames[i].time += 30;
+  options.recover = false;
+  LocalizationPipeline localization = started();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    EXPECT_EQ(update.health.state == HealthState::lost, i >= 50) << i;
+  }
+  EXPECT_EQ(localization.searches(), 0u);
+  StartOptions start;
+  start.pose = truth[50];
+  localization.start(start);
+  for (std::size_t i = 50; i < frames.size(); ++i)
+    EXPECT_LT(error(localization.step(frames[i]), i), 0.5) << i;
+}
+
 TEST_F(PoleLocalizationFaults, OfTooManyPolesTheMostConfidentAreUsed) {
   drive(3);
   std::vector<PoleScan> crowded = frames;

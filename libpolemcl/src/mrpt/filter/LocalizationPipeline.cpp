@@ -144,26 +144,44 @@ void LocalizationPipeline::initializeGlobally(const std::optional<SearchArea>& a
     requireRadius(area->radius);
     requireNearMap(area->centre_map.x(), area->centre_map.y(), area->radius);
   }
+  forgetPose();
   m_area = area;
+  m_calibration = OdometryCalibration(m_options.calibrateOdometry);
+  m_searches = 0;
+  m_started = true;
+  m_isCutOff = false;
+}
+
+/// The next frame is a first one. What was learnt of the odometry stays.
+void LocalizationPipeline::forgetPose() {
+  m_isCutOff |= m_hasPose;
+  m_area.reset();
   m_submap.clear();
   m_tracks.clear();
   m_localMaps.clear();
   m_odometryMonitor.clear();
-  m_calibration = OdometryCalibration(m_options.calibrateOdometry);
   m_meanVelocity.reset();
   m_monitor.reset();
   m_search = {};
-  m_searches = 0;
   m_searchedAt = 0;
   m_matches.clear();
-  m_started = true;
   m_hasPose = m_stepped = m_hadPoles = m_mistrusted = false;
+}
+
+/// Whether there was a gap of the scans, and the odometry hardly says where the vehicle went in it.
+bool LocalizationPipeline::isCutOff(const PoleScan& frame) const {
+  if (!m_stepped || !frame.motion || !(frame.time - m_time > gapSeconds)) return false;
+  return isBeyondLimits(*frame.motion) || isBeyondLimits(*calibrated(frame).motion);
 }
 
 LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
   if (!m_started)
     throw Error(
         "the localization has not been started: call start() or initializeGlobally() first");
+  if (isCutOff(seen)) {
+    requireStep(seen, std::nullopt);
+    forgetPose();
+  }
   // Both before anything changes: a correction makes a motion less certain.
   const auto before = m_stepped ? std::optional(m_time) : std::nullopt;
   requireStep(seen, before);
@@ -317,8 +335,8 @@ void LocalizationPipeline::doubtSubmap() {
 }
 
 bool LocalizationPipeline::searchIsDue() const {
+  if (!m_options.recover && (m_hasPose || m_isCutOff)) return false;
   if (m_hasPose) {
-    if (!m_options.recover) return false;
     const Health& health = m_monitor.health();
     const bool doubtful =
         health.state == HealthState::lost || health.reason == HealthReason::mismatch ||
