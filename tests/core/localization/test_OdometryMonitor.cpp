@@ -225,6 +225,19 @@ TEST(OdometryMonitor, AfterFiveSecondsTheOdometryIsBelievedWithoutPolesSeenAgain
   EXPECT_LE(contradicted, 6);
 }
 
+// As after a stall of the network: then two scans are 5 ms apart, and the next comes 195 ms later.
+TEST(OdometryMonitor, StampsCloseTogetherTellNoSpeed) {
+  for (const double before : {0.0, 1.0, 5.0}) {
+    OdometryMonitor check;
+    for (int i = 0; i < 200; ++i) {
+      const double early = i > 0 && i % 10 == 1 ? 0.095 : 0;
+      const auto motion =
+          check.add(before + 0.1 * i - early, {1.5, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity(), {});
+      EXPECT_FALSE(motion.replaced) << i;
+    }
+  }
+}
+
 TEST(OdometryMonitor, APoleThatIsSeenAgainSpeaksForTheOdometry) {
   SparseDrive drive;
   for (int i = 0; i < 40; ++i) drive.drive(3.6);

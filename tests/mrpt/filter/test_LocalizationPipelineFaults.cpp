@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/common/Deskew.h"
 #include "core/common/Transform.h"
 #include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleCity.h"
@@ -237,6 +238,21 @@ TEST_F(PoleLocalizationFaults, WithoutRecoveryAGapTooLongForTheOdometryIsLost) {
   localization.start(start);
   for (std::size_t i = 50; i < frames.size(); ++i)
     EXPECT_LT(error(localization.step(frames[i]), i), 0.5) << i;
+}
+
+// As after a stall of the network. Each pole is measured before or after the stamp.
+TEST_F(PoleLocalizationFaults, StampsCloseTogetherDoNotSpoilTheCorrectionOfDetections) {
+  drive(140);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Velocity velocity = velocityOf(frames[i].motion ? frames[i].motion->mean : Pose2D(), 0.1);
+    for (PoleDetection& pole : frames[i].poles_robot) {
+      const double offset = -0.05 * std::atan2(pole.y, pole.x) / M_PI;
+      pole = moved(motionAfter(velocity, -offset), pole);
+      pole.timeOffset = offset;
+    }
+    if (i % 50 == 49) frames[i].time -= 0.095;
+  }
+  expectOkFrom(run(), 20);
 }
 
 TEST_F(PoleLocalizationFaults, OfTooManyPolesTheMostConfidentAreUsed) {

@@ -116,13 +116,24 @@ MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
     now.seen = compose(last.seen, motion);
     now.spent = last.spent + covariance;
     result = m_state == State::contradicted ? replace(now, result) : watch(now, result);
-    if (!result.replaced) m_speed = scaled(motion, 1 / (time - last.time));
+    if (result.replaced)
+      m_steps.beginStep();
+    else
+      learnSpeed(motion, time - last.time);
     if (m_chance == 1) m_speedSeen = m_speed;
   }
   m_past.push_back(now);
   // One scan older than the window stays, so that the window is full.
   while (m_past.size() > 2 && time - m_past[1].time >= kComparedTime) m_past.pop_front();
   return result;
+}
+
+/// Scans whose stamps are close together tell no speed.
+void OdometryMonitor::learnSpeed(const Pose2D& motion, double seconds) {
+  const auto step = m_steps.add(motion, seconds);
+  if (!step) return;
+  m_speed = scaled(step->motion, 1 / step->seconds);
+  m_isSpeedKnown = true;
 }
 
 /// Indices of the scans to compare with, the latest first.
@@ -240,9 +251,10 @@ void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion)
 /// Whether a vehicle can have this speed after the one before. After kHold seconds, any is
 /// believed.
 bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) const {
-  if (m_past.size() < 2 || now.time - m_possibleTime > kHold) return true;
-  const double seconds = now.time - m_past.back().time;
-  const double way = std::hypot(motion.x, motion.y);
+  if (!m_isSpeedKnown || m_past.size() < 2 || now.time - m_possibleTime > kHold) return true;
+  const TimedMotion step = m_steps.joined(motion, now.time - m_past.back().time);
+  const double seconds = step.seconds;
+  const double way = std::hypot(step.motion.x, step.motion.y);
   const double expected = seconds * std::hypot(m_speed.x, m_speed.y);
   return std::abs(way - expected) <= kTolerance + kTimeError * std::max(way, expected) / seconds +
                                          kMostAcceleration * seconds * seconds;
@@ -292,8 +304,12 @@ MonitoredMotion OdometryMonitor::take(Reference& now, const Reference& reference
   result.pairs = alignment.pairs;
   // The step to come may make up for earlier ones: the speed is that of the whole way. Smoothed,
   // since it is what is left where poles are missing.
-  const Pose2D speed = scaled(alignment.motion, 1 / (now.time - reference.time));
-  m_speed = m_state == State::contradicted ? middle(m_speed, speed) : speed;
+  const double seconds = now.time - reference.time;
+  if (m_steps.tellsSpeed({alignment.motion, seconds})) {
+    const Pose2D speed = scaled(alignment.motion, 1 / seconds);
+    m_speed = m_state == State::contradicted ? middle(m_speed, speed) : speed;
+    m_isSpeedKnown = true;
+  }
   now.used = compose(reference.used, alignment.motion);
   result.motion = relative(m_past.back().used, now.used);
   const double turn = relative(reference.used, m_past.back().used).yaw;

@@ -20,6 +20,7 @@
 #include <polemcl/core/localization/LocalizationUpdate.h>
 #include <polemcl/export.h>
 #include "core/localization/ScanRegistration.h"
+#include "core/localization/WholeSteps.h"
 
 namespace polemcl {
 
@@ -82,6 +83,7 @@ class POLEMCL_EXPORT OdometryMonitor {
                        const ScanRegistration& alignment);
   bool hasSettled(const Reference& now) const;
   Pose2D coast(double seconds) const;
+  void learnSpeed(const Pose2D& motion, double seconds);
   MonitoredMotion coasted(Reference& now, const MonitoredMotion& odometry);
   bool isPossible(const Reference& now, const Pose2D& motion) const;
   void countSeenAgain(const Reference& now, const Pose2D& motion);
@@ -90,7 +92,9 @@ class POLEMCL_EXPORT OdometryMonitor {
   bool m_enabled;
   std::deque<Reference> m_past;
   State m_state = State::believed;
-  Pose2D m_speed;  ///< of the last motion handed out, per second
+  WholeSteps m_steps;  ///< of the motions handed out, as the odometry has them
+  Pose2D m_speed;      ///< of the last motion handed out, per second
+  bool m_isSpeedKnown = false;
   /// Poles that could be seen again, and those that were; the start counts like a few scans.
   double m_counted = 20, m_seenAgain = 10;
   Pose2D m_speedSeen;   ///< the last one with a pole that was seen again

@@ -160,6 +160,7 @@ void LocalizationPipeline::forgetPose() {
   m_tracks.clear();
   m_localMaps.clear();
   m_odometryMonitor.clear();
+  m_steps = {};
   m_meanVelocity.reset();
   m_monitor.reset();
   m_search = {};
@@ -257,12 +258,13 @@ std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
 
 /// The frame with its poles, not too many, as seen from the pose at its time stamp. Unless the
 /// frame states it, the velocity is that of the motion to it, extrapolated by half of its change
-/// since the motion before.
+/// since the motion before. Stamps close together tell none: then the velocity is the one before.
 PoleScan LocalizationPipeline::deskewed(PoleScan frame) {
   std::optional<Velocity> velocity = frame.velocity;
   if (m_stepped) {
-    const Velocity mean = velocityOf(frame.motion->mean, frame.time - m_time);
-    if (!velocity) velocity = m_meanVelocity ? extrapolated(*m_meanVelocity, mean) : mean;
+    const auto step = m_steps.add(frame.motion->mean, frame.time - m_time);
+    const auto mean = step ? velocityOf(step->motion, step->seconds) : m_meanVelocity;
+    if (!velocity) velocity = step && m_meanVelocity ? extrapolated(*m_meanVelocity, *mean) : mean;
     m_meanVelocity = mean;
   }
   keepMostConfident(frame.poles_robot);

@@ -17,6 +17,7 @@
 #include "core/localization/LocalizationHealth.h"
 #include "core/localization/OdometryCalibration.h"
 #include "core/localization/OdometryMonitor.h"
+#include "core/localization/WholeSteps.h"
 #include "mrpt/filter/PoleParticleFilter.h"
 
 namespace polemcl {
@@ -166,7 +167,8 @@ class POLEMCL_EXPORT LocalizationPipeline {
   OdometryMonitor m_odometryMonitor;
   OdometryCalibration m_calibration;
   HealthMonitor m_monitor;
-  std::optional<Velocity> m_meanVelocity;  ///< of the last motion
+  WholeSteps m_steps;                      ///< of the motions, for m_meanVelocity
+  std::optional<Velocity> m_meanVelocity;  ///< of the last step
   PoleScan m_tracked;                      ///< the last frame with the poles given to the filter
   GlobalResult m_search;
   std::vector<PoleMatch> m_matches;
