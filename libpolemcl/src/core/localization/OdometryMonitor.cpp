@@ -116,11 +116,12 @@ MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
     now.seen = compose(last.seen, motion);
     now.spent = last.spent + covariance;
     result = m_state == State::contradicted ? replace(now, result) : watch(now, result);
+    const bool isFirst = !m_isSpeedKnown;
     if (result.replaced)
       m_steps.beginStep();
     else
       learnSpeed(motion, time - last.time);
-    if (m_chance == 1) m_speedSeen = m_speed;
+    if (m_chance == 1 || isFirst) m_speedSeen = m_speed;
   }
   m_past.push_back(now);
   // One scan older than the window stays, so that the window is full.
@@ -221,16 +222,24 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
   }
   m_state = State::believed;
   countSeenAgain(now, odometry.motion);
-  if (result.verdict == OdometryVerdict::unknown &&
-      (m_chance < kLeastChance || !isPossible(now, odometry.motion)))
-    return coasted(now, odometry);
+  if (result.verdict == OdometryVerdict::unknown) {
+    const bool unseen = m_chance < kLeastChance;
+    if ((unseen && m_hasChanged) || !isPossible(now, odometry.motion))
+      return coasted(now, odometry);
+    if (unseen) {
+      result.verdict = OdometryVerdict::contradicted;
+      return result;
+    }
+  }
   m_possibleTime = now.time;
   return result;
 }
 
 /// Counts the poles of the scan before that are where the odometry expects them, within a metre.
 /// Updates the chance that none of them is, as has been since the last one that was. After kHold
-/// seconds of a small chance, poles are not expected to be seen again.
+/// seconds of a small chance, poles are not expected to be seen again. When the chance becomes
+/// small, either the odometry has changed, or the poles have: only the first is a reason to replace
+/// it.
 void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion) {
   const Reference& last = m_past.back();
   const auto poles = static_cast<double>(std::min(last.poles.size(), now.poles.size()));
@@ -238,14 +247,22 @@ void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion)
   near.sigma = near.reach;  // whatever the covariances
   const int seenAgain = judgeMotion(last.poles, now.poles, motion, near).pairs;
   const double share = std::min(kMostSeenAgain, m_seenAgain / m_counted);
+  const bool wasSmall = m_chance < kLeastChance;
   m_chance = seenAgain > 0 ? 1 : m_chance * std::pow(1 - share, poles);
   if (m_chance < kLeastChance) {
+    if (!wasSmall) m_hasChanged = hasChanged(motion, now.time - last.time);
     if (now.time - m_possibleTime <= kHold) return;
     m_chance = 1;
     m_seenAgain = 0;
   }
   m_seenAgain = kForget * m_seenAgain + seenAgain;
   m_counted = kForget * m_counted + poles;
+}
+
+/// Whether the odometry states another motion than at the speed when a pole was last seen again,
+/// beyond the tolerances.
+bool OdometryMonitor::hasChanged(const Pose2D& motion, double seconds) const {
+  return beyondTolerance(motion, scaled(m_speedSeen, seconds), Eigen::Matrix3d::Identity()) > 0;
 }
 
 /// Whether a vehicle can have this speed after the one before. After kHold seconds, any is
@@ -263,7 +280,7 @@ bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) con
 /// Keeps the speed before. The covariance also covers the motion that the odometry states.
 MonitoredMotion OdometryMonitor::coasted(Reference& now, const MonitoredMotion& odometry) {
   const Reference& last = m_past.back();
-  if (m_chance < kLeastChance) m_speed = m_speedSeen;
+  if (m_chance < kLeastChance && m_hasChanged) m_speed = m_speedSeen;
   MonitoredMotion result = odometry;
   result.verdict = OdometryVerdict::contradicted;
   result.replaced = true;

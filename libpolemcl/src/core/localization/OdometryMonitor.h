@@ -8,8 +8,10 @@
 /// the odometry's, and that motion is outside what the odometry's covariance and a tolerance for
 /// errors of its scale allow. Without such poles, a change of speed that no vehicle makes
 /// contradicts it, for some seconds; so do poles of which none is seen again where it says, when by
-/// the usual share of those seen again this has a chance of one in a thousand. From then on the
-/// poles' motion takes its place, until both agree again for a while. See share/doc/health.md.
+/// the usual share of those seen again this has a chance of one in a thousand. Where the odometry
+/// has not changed since poles were seen again, the poles have vanished: it is contradicted, but
+/// its motion is used. Else the poles' motion, or the last speed, takes its place, until both agree
+/// again for a while. See share/doc/health.md.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -87,6 +89,7 @@ class POLEMCL_EXPORT OdometryMonitor {
   MonitoredMotion coasted(Reference& now, const MonitoredMotion& odometry);
   bool isPossible(const Reference& now, const Pose2D& motion) const;
   void countSeenAgain(const Reference& now, const Pose2D& motion);
+  bool hasChanged(const Pose2D& motion, double seconds) const;
   std::size_t keyScan() const;
 
   bool m_enabled;
@@ -97,8 +100,9 @@ class POLEMCL_EXPORT OdometryMonitor {
   bool m_isSpeedKnown = false;
   /// Poles that could be seen again, and those that were; the start counts like a few scans.
   double m_counted = 20, m_seenAgain = 10;
-  Pose2D m_speedSeen;   ///< the last one with a pole that was seen again
+  Pose2D m_speedSeen;   ///< the last one with a pole that was seen again; at first the first one
   double m_chance = 1;  ///< that no pole was seen again since the last one that was
+  bool m_hasChanged = false;  ///< the odometry, when that chance became small
   /// When the odometry last was possible, or the poles agreed, s.
   double m_possibleTime = -INFINITY;
   double m_knownTime = 0;  ///< when the poles last told the motion, while contradicted, s
