@@ -362,6 +362,21 @@ std::vector<PoleScan> standing(const PoleScan& at, std::size_t count, double sig
   return scans;
 }
 
+TEST_F(PoleLocalizationFaults, AWrongStartIsFoundWhileTheVehicleStands) {
+  drive(140);
+  LocalizationPipeline localization(*map, options, 1);
+  StartOptions start;
+  start.pose = truth[150];
+  localization.start(start);
+  LocalizationUpdate update;
+  for (const PoleScan& scan : standing(frames.front(), 200, 0.001, 0.0001)) {
+    update = localization.step(scan);
+    if (update.relocalized) break;
+  }
+  EXPECT_TRUE(update.relocalized);
+  EXPECT_LT(error(update, 0), 0.3);
+}
+
 TEST_F(PoleLocalizationFaults, AParkedVehicleKeepsItsPose) {
   drive(40);
   for (const auto& [sigma, sigmaYaw] :

@@ -342,7 +342,8 @@ bool LocalizationPipeline::searchIsDue() const {
     const Health& health = m_monitor.health();
     const bool doubtful =
         health.state == HealthState::lost || health.reason == HealthReason::mismatch ||
-        health.reason == HealthReason::ambiguous || health.reason == HealthReason::spread;
+        health.reason == HealthReason::ambiguous || health.reason == HealthReason::spread ||
+        (health.reason == HealthReason::converging && m_monitor.isInFullDoubt());
     if (!doubtful) return false;
   }
   return m_submap.driven() - m_searchedAt >= kSearchEvery ||
