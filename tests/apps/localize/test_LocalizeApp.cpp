@@ -348,6 +348,13 @@ TEST(LocalizeAppAnywhere, ThePositionFromSatellitesSaysWhereToSearch) {
   const auto estimate = io::planar(io::readTum(city.at("out/run_00.tum")));
   for (std::size_t i = 0; i < estimate.size(); ++i)
     EXPECT_NEAR(estimate[i].pose.x, city.frames[first + i].truth.x, 0.5);
+  // A receiver that began long before the LiDAR.
+  writeText(city.folder / "drive.rawlog", fixAt(90, CityFiles::time(0) - 37) +
+                                              fixAt(50, CityFiles::time(0) - 3) +
+                                              fixAt(8, CityFiles::time(1)) + drive);
+  ASSERT_EQ(start("placed.polemap").code, 0);
+  EXPECT_NEAR(nlohmann::json::parse(readText(city.folder / "out/summary.json"))["start"]["x"],
+              begin.x + 8, 0.01);
   writeText(city.folder / "drive.rawlog", fixAt(5000, CityFiles::time(0)) + drive);
   expectFailure(start("placed.polemap"), {"from the nearest pole of the map"});
 }
