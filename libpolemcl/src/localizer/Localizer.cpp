@@ -36,12 +36,16 @@ struct Localizer::Impl {
 
   void start(const StartOptions& options) {
     pipeline.start(options);
-    odometry.restart();
-    isStarted = true;
+    beginDrive();
   }
   void startAnywhere(const std::optional<SearchArea>& area = {}) {
     pipeline.initializeGlobally(area);
+    beginDrive();
+  }
+  void beginDrive() {
     odometry.restart();
+    pose_map_odometry.reset();
+    poles_robot.clear();
     isStarted = true;
   }
   LocalizationUpdate step(const PoleScan& frame);

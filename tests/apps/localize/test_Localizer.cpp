@@ -365,7 +365,11 @@ TEST_F(OdometryTest, AfterAClockThatBeginsAgainANewStartTakesItsTimes) {
     step(own, i);
   }
   for (std::size_t i = 0; i < number; ++i) own.addOdometry(readingAt(i));
+  EXPECT_TRUE(own.odometryFrame());
+  EXPECT_FALSE(own.poles().empty());
   own.start({6, 0, 0}, 0.3, 0.1);
+  EXPECT_FALSE(own.odometryFrame()) << "that of the last drive";
+  EXPECT_TRUE(own.poles().empty());
   for (std::size_t i = 6; i < number; ++i) {
     const auto update = step(own, i);
     EXPECT_NEAR(update.estimate->mean.x, static_cast<double>(i), 0.3) << i;
