@@ -9,7 +9,8 @@
 
 namespace polemcl::apps {
 
-/// \brief Where the robot was at its first scan, by the first usable fix within 50 km of the datum.
+/// \brief Where the robot was at its first scan, by the usable fix within 50 km of the datum that
+/// is nearest in time.
 ///
 /// The radius is five standard deviations of the fix, 10 m for errors that last, the way of a fast
 /// vehicle (40 m/s) between fix and scan, and the distance of the antenna from the robot's origin.

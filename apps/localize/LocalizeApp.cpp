@@ -362,8 +362,8 @@ int localizeMain(int argc, const char* const* argv) {
                               "Start without a pose: search the whole map during the drive")
                      ->excludes(start);
   cli.add_flag("--start-gnss", job.startByGnss,
-               "Search the map only near the rawlog's first position from satellites; the map "
-               "needs a datum")
+               "Search the map only near the rawlog's position from satellites at its first scan; "
+               "the map needs a datum")
       ->excludes(start)
       ->excludes(global)
       ->excludes(cli.get_option("--sensors"));

@@ -36,19 +36,20 @@ struct Localizer::Impl {
 
   void start(const StartOptions& options) {
     pipeline.start(options);
-    odometry.restart();
-    isStarted = true;
+    beginDrive();
   }
   void startAnywhere(const std::optional<SearchArea>& area = {}) {
     pipeline.initializeGlobally(area);
+    beginDrive();
+  }
+  void beginDrive() {
     odometry.restart();
+    pose_map_odometry.reset();
+    poles_robot.clear();
     isStarted = true;
   }
   LocalizationUpdate step(const PoleScan& frame);
-  LocalizationUpdate step(PoleScan frame, const Pose2D& atScan) {
-    const double time = frame.time;
-    return follow(std::move(frame), time, odometry.addAtScan(time, atScan));
-  }
+  LocalizationUpdate step(PoleScan frame, const Pose2D& atScan);
   /// \brief With the motion that the odometry tells; arguments of ScanOdometry::motionTo().
   LocalizationUpdate follow(PoleScan frame, double time, const Pose2D& pose);
   LocalizationUpdate stepByOdometry(PoleScan frame, double time);
@@ -72,6 +73,18 @@ LocalizationUpdate Localizer::Impl::step(const PoleScan& frame) {
   pose_map_odometry.reset();
   poles_robot = frame.poles_robot;
   return update;
+}
+
+/// A scan that is refused leaves no reading of the odometry behind.
+LocalizationUpdate Localizer::Impl::step(PoleScan frame, const Pose2D& atScan) {
+  const double time = frame.time;
+  ScanOdometry before = odometry;
+  try {
+    return follow(std::move(frame), time, odometry.addAtScan(time, atScan));
+  } catch (...) {
+    odometry = std::move(before);
+    throw;
+  }
 }
 
 LocalizationUpdate Localizer::Impl::follow(PoleScan frame, double time, const Pose2D& pose) {

@@ -348,6 +348,13 @@ TEST(LocalizeAppAnywhere, ThePositionFromSatellitesSaysWhereToSearch) {
   const auto estimate = io::planar(io::readTum(city.at("out/run_00.tum")));
   for (std::size_t i = 0; i < estimate.size(); ++i)
     EXPECT_NEAR(estimate[i].pose.x, city.frames[first + i].truth.x, 0.5);
+  // A receiver that began long before the LiDAR.
+  writeText(city.folder / "drive.rawlog", fixAt(90, CityFiles::time(0) - 37) +
+                                              fixAt(50, CityFiles::time(0) - 3) +
+                                              fixAt(8, CityFiles::time(1)) + drive);
+  ASSERT_EQ(start("placed.polemap").code, 0);
+  EXPECT_NEAR(nlohmann::json::parse(readText(city.folder / "out/summary.json"))["start"]["x"],
+              begin.x + 8, 0.01);
   writeText(city.folder / "drive.rawlog", fixAt(5000, CityFiles::time(0)) + drive);
   expectFailure(start("placed.polemap"), {"from the nearest pole of the map"});
 }
@@ -367,6 +374,17 @@ TEST(LocalizeAppAnywhere, ARunThatFindsNothingIsNoErrorButSaysSo) {
   EXPECT_TRUE(json["runs"][0]["health"]["first_pose_scan"].is_null());
   EXPECT_FALSE(json.contains("pos_mean"));
   EXPECT_FALSE(fs::exists(city.folder / "out/run_00_errors.csv"));
+}
+
+TEST_F(LocalizeApp, AGapTooLongForTheOdometryKeepsTheResults) {
+  for (std::size_t i = scans / 2; i < scans; ++i) street.frames[i].time += 60;
+  street.frames[scans / 2].motion->covariance = 400 * Eigen::Matrix3d::Identity();
+  writeRawlog();
+  const auto outcome = run({"--start", "0,0,0,1,5"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string health = readText(out("run_00_health.csv"));
+  EXPECT_EQ(lines(health), scans + 1);
+  EXPECT_NE(health.find("lost,searching"), std::string::npos);
 }
 
 TEST_F(LocalizeApp, RefusesMissingFiles) {

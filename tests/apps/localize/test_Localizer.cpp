@@ -97,6 +97,25 @@ TEST_F(LocalizerTest, AJumpOfTheOdometryIsBridged) {
   EXPECT_EQ(own.odometryJumps(), 1u);
 }
 
+TEST_F(LocalizerTest, ARefusedScanLeavesNoOdometryBehind) {
+  Localizer own = localizer(), untouched = localizer();
+  own.start(street.truth.front());
+  untouched.start(street.truth.front());
+  for (std::size_t i = 0; i < scans; ++i) {
+    Pose2D reading = odometry[i];
+    if (i >= scans / 2) reading.x += 1000;  // a jump
+    if (i == scans / 4) {
+      std::vector<PoleDetection> poles = scans_poles[i].poles;
+      poles.at(0).x = NAN;
+      EXPECT_HAS(messageOf([&] { own.step(street.frames[i].time + 1000, poles, reading); }),
+                 "pole 0 has");
+    }
+    const auto update = own.step(scans_poles[i], reading);
+    EXPECT_EQ(update.estimate->mean.x, untouched.step(scans_poles[i], reading).estimate->mean.x);
+  }
+  EXPECT_EQ(own.odometryJumps(), 1u);
+}
+
 TEST_F(LocalizerTest, ANewStartTakesTimesThatBeginAgain) {
   Localizer own = localizer();
   own.start(street.truth.front());
@@ -346,7 +365,11 @@ TEST_F(OdometryTest, AfterAClockThatBeginsAgainANewStartTakesItsTimes) {
     step(own, i);
   }
   for (std::size_t i = 0; i < number; ++i) own.addOdometry(readingAt(i));
+  EXPECT_TRUE(own.odometryFrame());
+  EXPECT_FALSE(own.poles().empty());
   own.start({6, 0, 0}, 0.3, 0.1);
+  EXPECT_FALSE(own.odometryFrame()) << "that of the last drive";
+  EXPECT_TRUE(own.poles().empty());
   for (std::size_t i = 6; i < number; ++i) {
     const auto update = step(own, i);
     EXPECT_NEAR(update.estimate->mean.x, static_cast<double>(i), 0.3) << i;

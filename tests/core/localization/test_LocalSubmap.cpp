@@ -32,6 +32,13 @@ SubmapOptions exact() {
   return options;
 }
 
+/// As exact(), and poles that are not seen stay.
+SubmapOptions patient() {
+  SubmapOptions options = exact();
+  options.minShare = 0;
+  return options;
+}
+
 void expectRefused(const std::function<void()>& act, const std::string& what) {
   try {
     act();
@@ -364,6 +371,45 @@ TEST(LocalSubmap, TakesAtTheFrameNearestToTheDistance) {
   EXPECT_EQ(submap.take(2, 0.5).size(), 1u);
   submap.add({0.2, 0, 0}, sure, {seen(9.31, 2)});
   EXPECT_TRUE(submap.take(2, 0.5).empty());
+}
+
+TEST(LocalSubmap, FarFromTheStartItsCovariancesAreThoseNearIt) {
+  const auto afterKilometres = [](int kilometres) {
+    LocalSubmap submap(patient());
+    submap.add({}, {});
+    const Eigen::Matrix3d rough = Eigen::Vector3d(0.25, 0.25, 4e-4).asDiagonal();
+    const Eigen::Matrix3d fine = Eigen::Vector3d(1e-6, 1e-6, 1e-8).asDiagonal();
+    for (int i = 0; i < 100 * kilometres; ++i) submap.add({10, 0, 0}, rough, {});
+    submap.add({1, 0, 0}, rough, {seen(5, 5, 1e-4)});
+    for (int i = 0; i < 30; ++i) submap.add({0.01, 0, 0}, fine, {});
+    submap.add({0.01, 0, 0}, fine, {seen(5.2, -5, 1e-4)});
+    for (int i = 0; i < 30; ++i) submap.add({0.01, 0, 0}, fine, {});
+    return std::pair(submap.presentCovariance(submap.poles().at(0)),
+                     submap.presentCovariance(submap.poles().at(1)));
+  };
+  const auto [near, nearLater] = afterKilometres(0);
+  for (const int kilometres : {9, 11, 600}) {
+    const auto [far, farLater] = afterKilometres(kilometres);
+    EXPECT_LT((far - near).norm(), 1e-7) << kilometres;
+    EXPECT_LT((farLater - nearLater).norm(), 1e-7) << kilometres;
+  }
+}
+
+// The origin moves on between the sightings of two poles: what drift lies between them stays.
+TEST(LocalSubmap, TheDriftBetweenPolesStaysWhereTheOriginMovesOn) {
+  const auto between = [](double begin) {
+    LocalSubmap submap(patient());
+    const Eigen::Matrix3d fine = Eigen::Vector3d(1e-4, 1e-4, 1e-5).asDiagonal();
+    submap.add({}, {});
+    submap.add({begin, 0, 0}, fine, {seen(5, 5, 1e-4)});
+    for (int i = 0; i < 20; ++i) submap.add({1, 0, 0}, fine, {});
+    submap.add({1, 0, 0}, fine, {seen(5, -5, 1e-4)});
+    const SubmapPole &then = submap.poles().at(0), &now = submap.poles().at(1);
+    return OdometryDrift::between(then.drift, now.drift, then.centre);
+  };
+  const Eigen::Matrix2d expected = between(100);
+  EXPECT_GT(expected(1, 1), 0.002);
+  EXPECT_LT((between(9990) - expected).norm(), 1e-9);
 }
 
 TEST(LocalSubmap, TakesOnlyWhatIsSeenNow) {

@@ -180,10 +180,11 @@ struct SparseDrive {
       }
     return seen;
   }
-  MonitoredMotion drive(double stated) {
+  MonitoredMotion drive(const Pose2D& stated) {
     ++scan;
-    return check.add(0.9 * ++count, {stated, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity(), poles());
+    return check.add(0.9 * ++count, stated, 1e-6 * Eigen::Matrix3d::Identity(), poles());
   }
+  MonitoredMotion drive(double stated) { return drive(Pose2D{stated, 0, 0}); }
 };
 
 TEST(OdometryMonitor, PolesOfWhichNoneIsSeenAgainContradict) {
@@ -223,6 +224,41 @@ TEST(OdometryMonitor, AfterFiveSecondsTheOdometryIsBelievedWithoutPolesSeenAgain
   }
   EXPECT_GT(contradicted, 0);
   EXPECT_LE(contradicted, 6);
+}
+
+// The poles are behind, and false ones flicker. The vehicle brakes and turns: that is no fault.
+TEST(OdometryMonitor, PolesThatVanishDoNotReplaceAnOdometryThatHasNotChanged) {
+  SparseDrive drive;
+  for (int i = 0; i < 40; ++i) drive.drive(3.6);
+  for (int i = 0; i < 8; ++i) {
+    drive.scan += 10;
+    const Pose2D stated{i < 3 ? 3.6 : 2.5, 0, i < 3 ? 0 : 0.3};
+    const MonitoredMotion motion = drive.drive(stated);
+    EXPECT_FALSE(motion.replaced) << i;
+    EXPECT_EQ(motion.motion.x, stated.x) << i;
+    EXPECT_EQ(motion.motion.yaw, stated.yaw) << i;
+  }
+}
+
+TEST(OdometryMonitor, PolesThatFlickerFromTheBeginningDoNotStopTheVehicle) {
+  SparseDrive drive;
+  for (int i = 0; i < 20; ++i) {
+    drive.scan += 10;
+    EXPECT_FALSE(drive.drive(3.6).replaced) << i;
+  }
+}
+
+// As after a stall of the network: then two scans are 5 ms apart, and the next comes 195 ms later.
+TEST(OdometryMonitor, StampsCloseTogetherTellNoSpeed) {
+  for (const double before : {0.0, 1.0, 5.0}) {
+    OdometryMonitor check;
+    for (int i = 0; i < 200; ++i) {
+      const double early = i > 0 && i % 10 == 1 ? 0.095 : 0;
+      const auto motion =
+          check.add(before + 0.1 * i - early, {1.5, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity(), {});
+      EXPECT_FALSE(motion.replaced) << i;
+    }
+  }
 }
 
 TEST(OdometryMonitor, APoleThatIsSeenAgainSpeaksForTheOdometry) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/common/Deskew.h"
 #include "core/common/Transform.h"
 #include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleCity.h"
@@ -201,6 +202,59 @@ TEST_F(PoleLocalizationFaults, AGapOfMinutesIsNamedUntilPolesConfirmThePose) {
   expectOkFrom(updates, gap + 28);
 }
 
+// The motion over the gap says hardly anything: of too great a covariance, or too long.
+TEST_F(PoleLocalizationFaults, AGapTooLongForTheOdometryEndsInASearch) {
+  drive(210);
+  const std::size_t gap = 100;
+  for (std::size_t i = gap; i < frames.size(); ++i) frames[i].time += 30;
+  frames.erase(frames.begin() + gap, frames.begin() + gap + 100);
+  truth.erase(truth.begin() + gap, truth.begin() + gap + 100);
+  const PoseWithCovariance uncertain{{70, 0, 0}, 400 * Eigen::Matrix3d::Identity()};
+  const PoseWithCovariance endless{{20000, 0, 0}, 1e-4 * Eigen::Matrix3d::Identity()};
+  for (const auto& motion : {uncertain, endless}) {
+    frames[gap].motion = motion;
+    const auto updates = run();
+    EXPECT_EQ(updates[gap - 1].health.state, HealthState::ok);
+    EXPECT_FALSE(updates[gap].estimate);
+    EXPECT_EQ(updates[gap].health.reason, HealthReason::searching);
+    EXPECT_EQ(updates[gap].odometryErrors.scale, updates[gap - 1].odometryErrors.scale);
+    expectOkFrom(updates, gap + 60);
+  }
+}
+
+TEST_F(PoleLocalizationFaults, WithoutRecoveryAGapTooLongForTheOdometryIsLost) {
+  drive(70);
+  frames[50].motion->covariance = 400 * Eigen::Matrix3d::Identity();
+  for (std::size_t i = 50; i < frames.size(); ++i) frames[i].time += 30;
+  options.recover = false;
+  LocalizationPipeline localization = started();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    EXPECT_EQ(update.health.state == HealthState::lost, i >= 50) << i;
+  }
+  EXPECT_EQ(localization.searches(), 0u);
+  StartOptions start;
+  start.pose = truth[50];
+  localization.start(start);
+  for (std::size_t i = 50; i < frames.size(); ++i)
+    EXPECT_LT(error(localization.step(frames[i]), i), 0.5) << i;
+}
+
+// As after a stall of the network. Each pole is measured before or after the stamp.
+TEST_F(PoleLocalizationFaults, StampsCloseTogetherDoNotSpoilTheCorrectionOfDetections) {
+  drive(140);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Velocity velocity = velocityOf(frames[i].motion ? frames[i].motion->mean : Pose2D(), 0.1);
+    for (PoleDetection& pole : frames[i].poles_robot) {
+      const double offset = -0.05 * std::atan2(pole.y, pole.x) / M_PI;
+      pole = moved(motionAfter(velocity, -offset), pole);
+      pole.timeOffset = offset;
+    }
+    if (i % 50 == 49) frames[i].time -= 0.095;
+  }
+  expectOkFrom(run(), 20);
+}
+
 TEST_F(PoleLocalizationFaults, OfTooManyPolesTheMostConfidentAreUsed) {
   drive(3);
   std::vector<PoleScan> crowded = frames;
@@ -306,6 +360,21 @@ std::vector<PoleScan> standing(const PoleScan& at, std::size_t count, double sig
     scans[i].motion = PoseWithCovariance{{}, sigmas.cwiseAbs2().asDiagonal()};
   }
   return scans;
+}
+
+TEST_F(PoleLocalizationFaults, AWrongStartIsFoundWhileTheVehicleStands) {
+  drive(140);
+  LocalizationPipeline localization(*map, options, 1);
+  StartOptions start;
+  start.pose = truth[150];
+  localization.start(start);
+  LocalizationUpdate update;
+  for (const PoleScan& scan : standing(frames.front(), 200, 0.001, 0.0001)) {
+    update = localization.step(scan);
+    if (update.relocalized) break;
+  }
+  EXPECT_TRUE(update.relocalized);
+  EXPECT_LT(error(update, 0), 0.3);
 }
 
 TEST_F(PoleLocalizationFaults, AParkedVehicleKeepsItsPose) {

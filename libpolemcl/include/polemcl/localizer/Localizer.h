@@ -115,7 +115,7 @@ class POLEMCL_EXPORT Localizer {
   LocalizationUpdate step(double time, const PointsView& points,
                           const Eigen::Isometry3d& T_robot_lidar);
   /// \brief Pose of the frame of the odometry in that of the map at the last scan (ROS: `map` to
-  /// `odom`); nullopt if that scan gave no estimate.
+  /// `odom`); nullopt before the first scan after a start, or if that scan gave no estimate.
   std::optional<Pose2D> odometryFrame() const;
   /// @}
 
@@ -132,7 +132,7 @@ class POLEMCL_EXPORT Localizer {
   /// \brief Steps of the odometry so far that no vehicle makes, as after a restart of its node. The
   /// motion before went on in their place.
   std::size_t odometryJumps() const;
-  /// \brief The poles of the last scan, frame of the robot.
+  /// \brief The poles of the last scan since the start, frame of the robot.
   const std::vector<PoleDetection>& poles() const;
 
  private:

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double s_submapStep = 1;               ///< m
 constexpr double s_farthest = 5;                 ///< no detection belongs to a pole beyond, m
+constexpr double s_farFromOrigin = 10000;        ///< rounding errors of OdometryDrift grow, m
 constexpr std::uint32_t s_fewChances = 10;       ///< before them nothing is dropped for its misses
 constexpr std::size_t s_mostSubmapPoles = 2000;  ///< the oldest go first; a real drive has a tenth
 
@@ -87,6 +88,7 @@ void LocalSubmap::move(const Pose2D& motion, const Eigen::Matrix3d& covariance) 
   m_driven += m_step;
   const Eigen::Vector2d here(m_pose.x, m_pose.y);
   m_drift.add(here, yaw, covariance);
+  if ((here - m_drift.origin()).norm() > s_farFromOrigin) countDriftFrom(here);
   // The last place is always the present one; it stays when the one before is far enough away.
   const std::size_t count = m_path.size();
   if (count < 2 || m_pathDriven[count - 1] - m_pathDriven[count - 2] >= s_submapStep) {
@@ -96,6 +98,11 @@ void LocalSubmap::move(const Pose2D& motion, const Eigen::Matrix3d& covariance) 
     m_path.back() = here;
     m_pathDriven.back() = m_driven;
   }
+}
+
+void LocalSubmap::countDriftFrom(const Eigen::Vector2d& here) {
+  for (SubmapPole& pole : m_poles) pole.drift = pole.drift.countedFrom(m_drift, here);
+  m_drift = m_drift.countedFrom(m_drift, here);
 }
 
 void LocalSubmap::associate(const std::vector<PoleDetection>& poles_robot) {

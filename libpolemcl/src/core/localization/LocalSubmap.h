@@ -120,6 +120,7 @@ class POLEMCL_EXPORT LocalSubmap {
   PoleDetection seenNow(const SubmapPole& pole) const;
   void check(const std::vector<PoleDetection>& poles_robot) const;
   void move(const Pose2D& motion, const Eigen::Matrix3d& covariance);
+  void countDriftFrom(const Eigen::Vector2d& here);
   void associate(const std::vector<PoleDetection>& poles_robot);
   void update(SubmapPole& pole, const PoleDetection& detection, const Eigen::Vector2d& centre,
               const Eigen::Matrix2d& covariance) const;

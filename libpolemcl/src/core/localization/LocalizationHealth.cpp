@@ -32,6 +32,7 @@ constexpr double kDegradedShare = 0.4;  // degraded: a smaller share of them is 
 /// right and at a wrong place, these shares of the poles match. A few poles suffice if none
 /// matches.
 constexpr double kDoubt = 4, kRightShare = 0.7, kWrongShare = 0.1;
+constexpr double kFullDoubt = 2 * kDoubt;  // the greatest that is remembered
 /// Scans nearer to each other than this see the same poles, m. They count less, by their distance.
 constexpr double kSamePoles = 3;
 /// Doubt grows as at this speed at least, m/s: a vehicle that is moved while its wheels stand is
@@ -162,7 +163,11 @@ void HealthMonitor::doubt(const Viewpoint& scan, double metres) {
       (scan.seen - scan.matched) * std::log((1 - kWrongShare) / (1 - kRightShare)) -
       scan.matched * std::log(kRightShare / kWrongShare);
   m_doubt += std::min(1.0, metres / kSamePoles) * wrong;
-  m_doubt = std::clamp(m_doubt, 0.0, 2 * kDoubt);
+  m_doubt = std::clamp(m_doubt, 0.0, kFullDoubt);
+}
+
+bool HealthMonitor::isInFullDoubt() const {
+  return m_doubt >= kFullDoubt;
 }
 
 /// The doubt grows with the number of map poles that have fitted the same rival pose over the last

@@ -53,6 +53,9 @@ class POLEMCL_EXPORT HealthMonitor {
     m_health.state = HealthState::lost, m_health.reason = HealthReason::elsewhere;
   }
   const Health& health() const { return m_health; }
+  /// \brief Whether the poles of the last scans speak for a wrong place as strongly as they can,
+  /// also while the vehicle stands and the pose is not confirmed yet.
+  bool isInFullDoubt() const;
 
  private:
   /// Means of the scans from one viewpoint.

@@ -9,12 +9,14 @@ void OdometryDrift::add(const Eigen::Vector2d& end, double yaw, const Eigen::Mat
   m_position += rotation * covariance.topLeftCorner<2, 2>() * rotation.transpose();
   const double heading = covariance(2, 2);
   m_heading += heading;
-  m_first += heading * end;
-  m_second += heading * end * end.transpose();
+  const Eigen::Vector2d p = end - m_origin;
+  m_first += heading * p;
+  m_second += heading * p * p.transpose();
 }
 
 Eigen::Matrix2d OdometryDrift::between(const OdometryDrift& then, const OdometryDrift& now,
-                                       const Eigen::Vector2d& place) {
+                                       const Eigen::Vector2d& place_local) {
+  const Eigen::Vector2d place = place_local - now.m_origin;
   const double heading = now.m_heading - then.m_heading;
   const Eigen::Vector2d first = now.m_first - then.m_first;
   // Σ ω² (m - p)(m - p)ᵀ, multiplied out.
@@ -26,6 +28,20 @@ Eigen::Matrix2d OdometryDrift::between(const OdometryDrift& then, const Odometry
   covariance(0, 1) -= moment(0, 1);
   covariance(1, 0) -= moment(1, 0);
   return covariance;
+}
+
+OdometryDrift OdometryDrift::countedFrom(const OdometryDrift& zero,
+                                         const Eigen::Vector2d& origin) const {
+  const Eigen::Vector2d shift = origin - m_origin;
+  OdometryDrift drift;
+  drift.m_origin = origin;
+  drift.m_position = m_position - zero.m_position;
+  drift.m_heading = m_heading - zero.m_heading;
+  const Eigen::Vector2d first = m_first - zero.m_first;
+  drift.m_first = first - drift.m_heading * shift;
+  drift.m_second = m_second - zero.m_second - first * shift.transpose() -
+                   shift * first.transpose() + drift.m_heading * shift * shift.transpose();
+  return drift;
 }
 
 }  // namespace polemcl

@@ -31,7 +31,14 @@ class POLEMCL_EXPORT OdometryDrift {
   static Eigen::Matrix2d between(const OdometryDrift& then, const OdometryDrift& now,
                                  const Eigen::Vector2d& place);
 
+  /// \brief The state counted from a later one, with sums about another origin (local frame, m).
+  /// between() gives the same for states that were all counted anew. Far from the origin, the
+  /// differences of the sums would be lost in rounding.
+  OdometryDrift countedFrom(const OdometryDrift& zero, const Eigen::Vector2d& origin) const;
+  const Eigen::Vector2d& origin() const { return m_origin; }  ///< of the sums, local frame, m
+
  private:
+  Eigen::Vector2d m_origin = Eigen::Vector2d::Zero();    ///< p_k are from here, m
   Eigen::Matrix2d m_position = Eigen::Matrix2d::Zero();  ///< Σ N_k, m²
   double m_heading = 0;                                  ///< Σ ω_k², rad²
   Eigen::Vector2d m_first = Eigen::Vector2d::Zero();     ///< Σ ω_k² p_k

@@ -116,13 +116,25 @@ MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
     now.seen = compose(last.seen, motion);
     now.spent = last.spent + covariance;
     result = m_state == State::contradicted ? replace(now, result) : watch(now, result);
-    if (!result.replaced) m_speed = scaled(motion, 1 / (time - last.time));
-    if (m_chance == 1) m_speedSeen = m_speed;
+    const bool isFirst = !m_isSpeedKnown;
+    if (result.replaced)
+      m_steps.beginStep();
+    else
+      learnSpeed(motion, time - last.time);
+    if (m_chance == 1 || isFirst) m_speedSeen = m_speed;
   }
   m_past.push_back(now);
   // One scan older than the window stays, so that the window is full.
   while (m_past.size() > 2 && time - m_past[1].time >= kComparedTime) m_past.pop_front();
   return result;
+}
+
+/// Scans whose stamps are close together tell no speed.
+void OdometryMonitor::learnSpeed(const Pose2D& motion, double seconds) {
+  const auto step = m_steps.add(motion, seconds);
+  if (!step) return;
+  m_speed = scaled(step->motion, 1 / step->seconds);
+  m_isSpeedKnown = true;
 }
 
 /// Indices of the scans to compare with, the latest first.
@@ -210,16 +222,24 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
   }
   m_state = State::believed;
   countSeenAgain(now, odometry.motion);
-  if (result.verdict == OdometryVerdict::unknown &&
-      (m_chance < kLeastChance || !isPossible(now, odometry.motion)))
-    return coasted(now, odometry);
+  if (result.verdict == OdometryVerdict::unknown) {
+    const bool unseen = m_chance < kLeastChance;
+    if ((unseen && m_hasChanged) || !isPossible(now, odometry.motion))
+      return coasted(now, odometry);
+    if (unseen) {
+      result.verdict = OdometryVerdict::contradicted;
+      return result;
+    }
+  }
   m_possibleTime = now.time;
   return result;
 }
 
 /// Counts the poles of the scan before that are where the odometry expects them, within a metre.
 /// Updates the chance that none of them is, as has been since the last one that was. After kHold
-/// seconds of a small chance, poles are not expected to be seen again.
+/// seconds of a small chance, poles are not expected to be seen again. When the chance becomes
+/// small, either the odometry has changed, or the poles have: only the first is a reason to replace
+/// it.
 void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion) {
   const Reference& last = m_past.back();
   const auto poles = static_cast<double>(std::min(last.poles.size(), now.poles.size()));
@@ -227,8 +247,10 @@ void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion)
   near.sigma = near.reach;  // whatever the covariances
   const int seenAgain = judgeMotion(last.poles, now.poles, motion, near).pairs;
   const double share = std::min(kMostSeenAgain, m_seenAgain / m_counted);
+  const bool wasSmall = m_chance < kLeastChance;
   m_chance = seenAgain > 0 ? 1 : m_chance * std::pow(1 - share, poles);
   if (m_chance < kLeastChance) {
+    if (!wasSmall) m_hasChanged = hasChanged(motion, now.time - last.time);
     if (now.time - m_possibleTime <= kHold) return;
     m_chance = 1;
     m_seenAgain = 0;
@@ -237,12 +259,19 @@ void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion)
   m_counted = kForget * m_counted + poles;
 }
 
+/// Whether the odometry states another motion than at the speed when a pole was last seen again,
+/// beyond the tolerances.
+bool OdometryMonitor::hasChanged(const Pose2D& motion, double seconds) const {
+  return beyondTolerance(motion, scaled(m_speedSeen, seconds), Eigen::Matrix3d::Identity()) > 0;
+}
+
 /// Whether a vehicle can have this speed after the one before. After kHold seconds, any is
 /// believed.
 bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) const {
-  if (m_past.size() < 2 || now.time - m_possibleTime > kHold) return true;
-  const double seconds = now.time - m_past.back().time;
-  const double way = std::hypot(motion.x, motion.y);
+  if (!m_isSpeedKnown || m_past.size() < 2 || now.time - m_possibleTime > kHold) return true;
+  const TimedMotion step = m_steps.joined(motion, now.time - m_past.back().time);
+  const double seconds = step.seconds;
+  const double way = std::hypot(step.motion.x, step.motion.y);
   const double expected = seconds * std::hypot(m_speed.x, m_speed.y);
   return std::abs(way - expected) <= kTolerance + kTimeError * std::max(way, expected) / seconds +
                                          kMostAcceleration * seconds * seconds;
@@ -251,7 +280,7 @@ bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) con
 /// Keeps the speed before. The covariance also covers the motion that the odometry states.
 MonitoredMotion OdometryMonitor::coasted(Reference& now, const MonitoredMotion& odometry) {
   const Reference& last = m_past.back();
-  if (m_chance < kLeastChance) m_speed = m_speedSeen;
+  if (m_chance < kLeastChance && m_hasChanged) m_speed = m_speedSeen;
   MonitoredMotion result = odometry;
   result.verdict = OdometryVerdict::contradicted;
   result.replaced = true;
@@ -292,8 +321,12 @@ MonitoredMotion OdometryMonitor::take(Reference& now, const Reference& reference
   result.pairs = alignment.pairs;
   // The step to come may make up for earlier ones: the speed is that of the whole way. Smoothed,
   // since it is what is left where poles are missing.
-  const Pose2D speed = scaled(alignment.motion, 1 / (now.time - reference.time));
-  m_speed = m_state == State::contradicted ? middle(m_speed, speed) : speed;
+  const double seconds = now.time - reference.time;
+  if (m_steps.tellsSpeed({alignment.motion, seconds})) {
+    const Pose2D speed = scaled(alignment.motion, 1 / seconds);
+    m_speed = m_state == State::contradicted ? middle(m_speed, speed) : speed;
+    m_isSpeedKnown = true;
+  }
   now.used = compose(reference.used, alignment.motion);
   result.motion = relative(m_past.back().used, now.used);
   const double turn = relative(reference.used, m_past.back().used).yaw;

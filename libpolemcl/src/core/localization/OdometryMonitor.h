@@ -8,8 +8,10 @@
 /// the odometry's, and that motion is outside what the odometry's covariance and a tolerance for
 /// errors of its scale allow. Without such poles, a change of speed that no vehicle makes
 /// contradicts it, for some seconds; so do poles of which none is seen again where it says, when by
-/// the usual share of those seen again this has a chance of one in a thousand. From then on the
-/// poles' motion takes its place, until both agree again for a while. See share/doc/health.md.
+/// the usual share of those seen again this has a chance of one in a thousand. Where the odometry
+/// has not changed since poles were seen again, the poles have vanished: it is contradicted, but
+/// its motion is used. Else the poles' motion, or the last speed, takes its place, until both agree
+/// again for a while. See share/doc/health.md.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -20,6 +22,7 @@
 #include <polemcl/core/localization/LocalizationUpdate.h>
 #include <polemcl/export.h>
 #include "core/localization/ScanRegistration.h"
+#include "core/localization/WholeSteps.h"
 
 namespace polemcl {
 
@@ -82,19 +85,24 @@ class POLEMCL_EXPORT OdometryMonitor {
                        const ScanRegistration& alignment);
   bool hasSettled(const Reference& now) const;
   Pose2D coast(double seconds) const;
+  void learnSpeed(const Pose2D& motion, double seconds);
   MonitoredMotion coasted(Reference& now, const MonitoredMotion& odometry);
   bool isPossible(const Reference& now, const Pose2D& motion) const;
   void countSeenAgain(const Reference& now, const Pose2D& motion);
+  bool hasChanged(const Pose2D& motion, double seconds) const;
   std::size_t keyScan() const;
 
   bool m_enabled;
   std::deque<Reference> m_past;
   State m_state = State::believed;
-  Pose2D m_speed;  ///< of the last motion handed out, per second
+  WholeSteps m_steps;  ///< of the motions handed out, as the odometry has them
+  Pose2D m_speed;      ///< of the last motion handed out, per second
+  bool m_isSpeedKnown = false;
   /// Poles that could be seen again, and those that were; the start counts like a few scans.
   double m_counted = 20, m_seenAgain = 10;
-  Pose2D m_speedSeen;   ///< the last one with a pole that was seen again
+  Pose2D m_speedSeen;   ///< the last one with a pole that was seen again; at first the first one
   double m_chance = 1;  ///< that no pole was seen again since the last one that was
+  bool m_hasChanged = false;  ///< the odometry, when that chance became small
   /// When the odometry last was possible, or the poles agreed, s.
   double m_possibleTime = -INFINITY;
   double m_knownTime = 0;  ///< when the poles last told the motion, while contradicted, s

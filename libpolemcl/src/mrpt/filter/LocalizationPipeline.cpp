@@ -144,26 +144,45 @@ void LocalizationPipeline::initializeGlobally(const std::optional<SearchArea>& a
     requireRadius(area->radius);
     requireNearMap(area->centre_map.x(), area->centre_map.y(), area->radius);
   }
+  forgetPose();
   m_area = area;
+  m_calibration = OdometryCalibration(m_options.calibrateOdometry);
+  m_searches = 0;
+  m_started = true;
+  m_isCutOff = false;
+}
+
+/// The next frame is a first one. What was learnt of the odometry stays.
+void LocalizationPipeline::forgetPose() {
+  m_isCutOff |= m_hasPose;
+  m_area.reset();
   m_submap.clear();
   m_tracks.clear();
   m_localMaps.clear();
   m_odometryMonitor.clear();
-  m_calibration = OdometryCalibration(m_options.calibrateOdometry);
+  m_steps = {};
   m_meanVelocity.reset();
   m_monitor.reset();
   m_search = {};
-  m_searches = 0;
   m_searchedAt = 0;
   m_matches.clear();
-  m_started = true;
   m_hasPose = m_stepped = m_hadPoles = m_mistrusted = false;
+}
+
+/// Whether there was a gap of the scans, and the odometry hardly says where the vehicle went in it.
+bool LocalizationPipeline::isCutOff(const PoleScan& frame) const {
+  if (!m_stepped || !frame.motion || !(frame.time - m_time > gapSeconds)) return false;
+  return isBeyondLimits(*frame.motion) || isBeyondLimits(*calibrated(frame).motion);
 }
 
 LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
   if (!m_started)
     throw Error(
         "the localization has not been started: call start() or initializeGlobally() first");
+  if (isCutOff(seen)) {
+    requireStep(seen, std::nullopt);
+    forgetPose();
+  }
   // Both before anything changes: a correction makes a motion less certain.
   const auto before = m_stepped ? std::optional(m_time) : std::nullopt;
   requireStep(seen, before);
@@ -239,12 +258,13 @@ std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
 
 /// The frame with its poles, not too many, as seen from the pose at its time stamp. Unless the
 /// frame states it, the velocity is that of the motion to it, extrapolated by half of its change
-/// since the motion before.
+/// since the motion before. Stamps close together tell none: then the velocity is the one before.
 PoleScan LocalizationPipeline::deskewed(PoleScan frame) {
   std::optional<Velocity> velocity = frame.velocity;
   if (m_stepped) {
-    const Velocity mean = velocityOf(frame.motion->mean, frame.time - m_time);
-    if (!velocity) velocity = m_meanVelocity ? extrapolated(*m_meanVelocity, mean) : mean;
+    const auto step = m_steps.add(frame.motion->mean, frame.time - m_time);
+    const auto mean = step ? velocityOf(step->motion, step->seconds) : m_meanVelocity;
+    if (!velocity) velocity = step && m_meanVelocity ? extrapolated(*m_meanVelocity, *mean) : mean;
     m_meanVelocity = mean;
   }
   keepMostConfident(frame.poles_robot);
@@ -317,12 +337,13 @@ void LocalizationPipeline::doubtSubmap() {
 }
 
 bool LocalizationPipeline::searchIsDue() const {
+  if (!m_options.recover && (m_hasPose || m_isCutOff)) return false;
   if (m_hasPose) {
-    if (!m_options.recover) return false;
     const Health& health = m_monitor.health();
     const bool doubtful =
         health.state == HealthState::lost || health.reason == HealthReason::mismatch ||
-        health.reason == HealthReason::ambiguous || health.reason == HealthReason::spread;
+        health.reason == HealthReason::ambiguous || health.reason == HealthReason::spread ||
+        (health.reason == HealthReason::converging && m_monitor.isInFullDoubt());
     if (!doubtful) return false;
   }
   return m_submap.driven() - m_searchedAt >= kSearchEvery ||

@@ -17,6 +17,7 @@
 #include "core/localization/LocalizationHealth.h"
 #include "core/localization/OdometryCalibration.h"
 #include "core/localization/OdometryMonitor.h"
+#include "core/localization/WholeSteps.h"
 #include "mrpt/filter/PoleParticleFilter.h"
 
 namespace polemcl {
@@ -90,12 +91,18 @@ class POLEMCL_EXPORT LocalizationPipeline {
   void initializeGlobally(const std::optional<SearchArea>& area = std::nullopt);
 
   /// \brief Processes the next scan. The motion of the first frame is ignored.
+  ///
+  /// A motion over a gap of the scans may be beyond the limits of makeMotionAction(). Then the pose
+  /// is forgotten, and the frame is a first one: the pose is searched for, or with
+  /// `recover = false` lost until the next start.
   /// \throws Error as PoleParticleFilter::step(); the state is then unchanged.
   LocalizationUpdate step(const PoleScan& frame);
 
   static constexpr double maxStartDistance = 1000;  ///< m
   /// Standard deviation of the velocity during a first scan that does not state it, m/s.
   static constexpr double unknownSpeed = 5;
+  /// Two scans farther apart than this have a gap between them, s.
+  static constexpr double gapSeconds = 2;
   /// Most poles of a scan that are used: the most confident ones. It limits the time of a step.
   static constexpr std::size_t mostPoles = 200;
   /// Above this distance between two scans their poles are not averaged, m.
@@ -130,6 +137,8 @@ class POLEMCL_EXPORT LocalizationPipeline {
   /// @}
 
  private:
+  void forgetPose();
+  bool isCutOff(const PoleScan& frame) const;
   PoleScan calibrated(PoleScan frame) const;
   void calibrate(const PoseWithCovariance& motion, const LocalizationUpdate& update);
   PoleScan deskewed(PoleScan frame);
@@ -158,12 +167,14 @@ class POLEMCL_EXPORT LocalizationPipeline {
   OdometryMonitor m_odometryMonitor;
   OdometryCalibration m_calibration;
   HealthMonitor m_monitor;
-  std::optional<Velocity> m_meanVelocity;  ///< of the last motion
+  WholeSteps m_steps;                      ///< of the motions, for m_meanVelocity
+  std::optional<Velocity> m_meanVelocity;  ///< of the last step
   PoleScan m_tracked;                      ///< the last frame with the poles given to the filter
   GlobalResult m_search;
   std::vector<PoleMatch> m_matches;
   PoseWithCovariance m_estimate;
   bool m_hasPose = false, m_started = false, m_stepped = false;
+  bool m_isCutOff = false;    ///< a pose was known and had to be forgotten
   double m_forgotten = 0;     ///< variance at rest since poles were used again, m²
   bool m_hadPoles = false;    ///< in an earlier frame
   bool m_isFirst = false;     ///< no frame before this one had poles

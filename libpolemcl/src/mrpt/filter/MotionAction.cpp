@@ -15,14 +15,29 @@ namespace polemcl {
 
 namespace {
 
+bool isFinite(const PoseWithCovariance& motion) {
+  return std::isfinite(motion.mean.x) && std::isfinite(motion.mean.y) &&
+         std::isfinite(motion.mean.yaw) && motion.covariance.allFinite();
+}
+
+double metresOf(const PoseWithCovariance& motion) {
+  return std::hypot(motion.mean.x, motion.mean.y);
+}
+
+/// Standard deviations of a motion, m and rad.
+struct Sigmas {
+  explicit Sigmas(const Eigen::Matrix3d& covariance)
+      : metres(std::sqrt(std::max({0.0, covariance(0, 0), covariance(1, 1)}))),
+        radians(std::sqrt(std::max(0.0, covariance(2, 2)))) {}
+  bool areAllowed() const { return metres <= kMaxMotionMetres && radians <= kMaxMotionRadians; }
+  double metres, radians;
+};
+
 void requireFinite(const PoseWithCovariance& motion) {
-  if (!std::isfinite(motion.mean.x) || !std::isfinite(motion.mean.y) ||
-      !std::isfinite(motion.mean.yaw) || !motion.covariance.allFinite())
-    throw Error("the motion is not finite: check the odometry");
-  const double metres = std::hypot(motion.mean.x, motion.mean.y);
-  if (metres <= kMaxMotionStep) return;
+  if (!isFinite(motion)) throw Error("the motion is not finite: check the odometry");
+  if (metresOf(motion) <= kMaxMotionStep) return;
   std::ostringstream text;
-  text << "the motion is " << metres << " m long; at most " << kMaxMotionStep
+  text << "the motion is " << metresOf(motion) << " m long; at most " << kMaxMotionStep
        << " m from one scan to the next are allowed: check the odometry";
   throw Error(text.str());
 }
@@ -35,12 +50,11 @@ void requireCovariance(const Eigen::Matrix3d& covariance) {
 }
 
 void requireCertain(const Eigen::Matrix3d& covariance) {
-  const double metres = std::sqrt(std::max({0.0, covariance(0, 0), covariance(1, 1)}));
-  const double radians = std::sqrt(std::max(0.0, covariance(2, 2)));
-  if (metres <= kMaxMotionMetres && radians <= kMaxMotionRadians) return;
+  const Sigmas sigmas(covariance);
+  if (sigmas.areAllowed()) return;
   std::ostringstream text;
-  text << "the motion is too uncertain, with standard deviations of " << metres << " m and "
-       << radians << " rad; at most " << kMaxMotionMetres << " m and " << kMaxMotionRadians
+  text << "the motion is too uncertain, with standard deviations of " << sigmas.metres << " m and "
+       << sigmas.radians << " rad; at most " << kMaxMotionMetres << " m and " << kMaxMotionRadians
        << " rad are allowed: check the odometry, or [motion]";
   throw Error(text.str());
 }
@@ -52,6 +66,11 @@ void requireMotion(const PoseWithCovariance& motion) {
 }
 
 }  // namespace
+
+bool isBeyondLimits(const PoseWithCovariance& motion) {
+  if (!isFinite(motion) || !isCovariance(motion.covariance)) return false;
+  return metresOf(motion) > kMaxMotionStep || !Sigmas(motion.covariance).areAllowed();
+}
 
 mrpt::obs::CActionCollection::Ptr makeMotionAction(const PoseWithCovariance& motion,
                                                    const FilterOptions& options) {

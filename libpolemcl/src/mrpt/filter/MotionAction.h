@@ -18,6 +18,9 @@ constexpr double kMaxMotionMetres = 10, kMaxMotionRadians = 1;
 /// Longest motion between two consecutive scans, m.
 constexpr double kMaxMotionStep = 10000;
 
+/// \brief Whether a motion is sound, but longer or more uncertain than these limits.
+bool isBeyondLimits(const PoseWithCovariance& motion);
+
 /// \brief An action with one `CActionRobotMovement2D` of kind `emScan2DMatching` (this kind
 /// survives serialization). It is a Gaussian whose variances are those of the motion plus the
 /// squares of the extra sigmas.

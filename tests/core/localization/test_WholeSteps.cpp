@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/localization/WholeSteps.h"
+
+namespace polemcl::test_whole_steps {
+
+namespace {
+
+double speedOf(const std::optional<TimedMotion>& step) {
+  return step ? step->motion.x / step->seconds : -1;
+}
+
+}  // namespace
+
+TEST(WholeSteps, RegularStepsAreHandedOutAsTheyAre) {
+  for (const double seconds : {0.05, 0.1, 0.5, 3.0}) {
+    WholeSteps steps;
+    for (int i = 0; i < 5; ++i) {
+      const auto step = steps.add({10 * seconds, 0.1, 0.01}, seconds);
+      ASSERT_TRUE(step) << seconds;
+      EXPECT_EQ(step->motion.x, 10 * seconds);
+      EXPECT_EQ(step->seconds, seconds);
+    }
+  }
+}
+
+TEST(WholeSteps, AStepTooShortIsJoinedWithTheNext) {
+  WholeSteps steps;
+  steps.add({1, 0, 0}, 0.1);
+  EXPECT_FALSE(steps.add({1, 0, 0.2}, 0.005));
+  EXPECT_EQ(steps.joined({1, 0, 0}, 0.195).seconds, 0.2);
+  const auto step = steps.add({1, 0, 0}, 0.195);
+  ASSERT_TRUE(step);
+  EXPECT_NEAR(step->motion.x, 1 + std::cos(0.2), 1e-12);
+  EXPECT_NEAR(step->motion.yaw, 0.2, 1e-12);
+  EXPECT_NEAR(speedOf(steps.add({1, 0, 0}, 0.1)), 10, 1e-9);
+}
+
+TEST(WholeSteps, TheFirstStepMayBeTooShort) {
+  WholeSteps steps;
+  EXPECT_FALSE(steps.add({0.1, 0, 0}, 0.005));
+  EXPECT_NEAR(speedOf(steps.add({0.1, 0, 0}, 0.195)), 1, 1e-9);
+}
+
+TEST(WholeSteps, FasterScansAreFollowed) {
+  WholeSteps steps;
+  for (int i = 0; i < 5; ++i) steps.add({1, 0, 0}, 0.1);
+  int told = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double speed = speedOf(steps.add({0.1, 0, 0}, 0.01));
+    told += speed > 0;
+    EXPECT_TRUE(speed < 0 || std::abs(speed - 10) < 1e-9) << i;
+  }
+  EXPECT_GE(told, 17);
+}
+
+TEST(WholeSteps, AfterALongGapTheStepsBeforeAreUsual) {
+  WholeSteps steps;
+  for (const double seconds : {0.1, 0.1, 2.0, 0.1, 0.1})
+    EXPECT_NEAR(speedOf(steps.add({seconds, 0, 0}, seconds)), 1, 1e-9) << seconds;
+}
+
+TEST(WholeSteps, AJumpTellsNoSpeed) {
+  WholeSteps steps;
+  steps.add({1, 0, 0}, 0.1);
+  EXPECT_FALSE(steps.add({500, 0, 0}, 0.1));
+  EXPECT_FALSE(steps.add({1, 0, 0}, 0.1));
+  EXPECT_FALSE(steps.add({1, 0, 0}, 0.1));
+  EXPECT_NEAR(speedOf(steps.add({1, 0, 0}, 0.1)), 10, 1e-9);
+}
+
+}  // namespace polemcl::test_whole_steps
