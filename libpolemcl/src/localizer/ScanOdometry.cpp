@@ -25,10 +25,14 @@ void ScanOdometry::add(const OdometryReading& next) {
   requireFinite(next.time, next.pose);
   if (m_reading && next.time <= m_reading->time) {
     if (!m_lateSince || next.time < *m_lateSince) m_lateSince = next.time;
+    m_late = next;
     if (next.time - *m_lateSince < kClockSet) return;
+    beginAnew();
+  } else if (continuesLate(next)) {
     beginAnew();
   }
   m_lateSince.reset();
+  m_late.reset();
   m_track.add(next.time, next.pose);
   OdometryReading taken = next;
   taken.pose = *m_track.at(next.time);
@@ -43,6 +47,13 @@ void ScanOdometry::add(const OdometryReading& next) {
   m_reading = taken;
   m_track.forgetBefore(next.time - Localizer::keptOdometry);
   m_steps.forgetBefore(next.time - Localizer::keptOdometry);
+}
+
+/// Whether a reading goes on from those that were left out, and not from the last one that was
+/// taken: the clock was set back by less than kClockSet.
+bool ScanOdometry::continuesLate(const OdometryReading& next) const {
+  return m_late && m_track.jumpsTo(next.time, next.pose) &&
+         !OdometryTrack::isTooFast(relative(m_late->pose, next.pose), next.time - m_late->time);
 }
 
 /// The next reading is the first one of its clock. Its pose goes on from the readings before.

@@ -18,7 +18,8 @@ class ScanOdometry {
   explicit ScanOdometry(const MotionOptions& options) : m_options(options) {}
 
   /// \brief A reading not later than the last one is left out; after a second of such readings the
-  /// odometry begins anew. \throws Error unless time and pose are finite.
+  /// odometry begins anew, or when one is a jump from the last one but goes on from those left out.
+  /// \throws Error unless time and pose are finite.
   void add(const OdometryReading& reading);
   /// \brief A drive begins: no motion leads to its first scan, and its times may begin anew.
   void restart();
@@ -35,6 +36,7 @@ class ScanOdometry {
   void pass(double time, const Pose2D& pose);
 
  private:
+  bool continuesLate(const OdometryReading& next) const;
   void beginAnew();
 
   MotionOptions m_options;
@@ -42,6 +44,7 @@ class ScanOdometry {
   io::MotionSteps m_steps;                   ///< between the readings whose covariance is known
   std::optional<OdometryReading> m_reading;  ///< the last one; its pose is that of the track
   std::optional<double> m_lateSince;         ///< first of the readings now left out, s
+  std::optional<OdometryReading> m_late;     ///< the last of them
   std::optional<Pose2D> m_before;            ///< at the last scan
   double m_timeBefore = -INFINITY;           ///< of the last scan, s
 };

@@ -7,6 +7,7 @@
 #include <polemcl/localizer/Localizer.h>
 #include <polemcl/localizer/MapBuilder.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
+#include "localizer/ScanOdometry.h"
 #include "map/MapApp.h"
 #include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
@@ -374,6 +375,44 @@ TEST_F(OdometryTest, AfterAClockThatBeginsAgainANewStartTakesItsTimes) {
     const auto update = step(own, i);
     EXPECT_NEAR(update.estimate->mean.x, static_cast<double>(i), 0.3) << i;
   }
+}
+
+namespace {
+
+/// Readings at 50 Hz and 10 m/s.
+OdometryReading fastReading(int i, double late) {
+  OdometryReading reading;
+  reading.time = 50 + 0.02 * i - late;
+  reading.pose.x = 0.2 * i;
+  return reading;
+}
+
+}  // namespace
+
+TEST(ScanOdometry, AClockThatIsSetBackByHalfASecondIsNoJump) {
+  ScanOdometry odometry{MotionOptions()};
+  for (int i = 0; i <= 50; ++i) odometry.add(fastReading(i, 0));
+  odometry.pass(51, *odometry.track().at(51));
+  for (int i = 51; i <= 100; ++i) odometry.add(fastReading(i, 0.51));
+  const double time = fastReading(100, 0.51).time;
+  const auto motion = odometry.motionTo(time, *odometry.track().at(time));
+  ASSERT_TRUE(motion);
+  EXPECT_NEAR(motion->mean.x, 10, 1e-9);
+  EXPECT_EQ(odometry.track().jumps(), 0u);
+}
+
+TEST(ScanOdometry, AJumpAfterAReadingThatComesLateIsAJump) {
+  ScanOdometry odometry{MotionOptions()};
+  for (int i = 0; i <= 50; ++i) odometry.add(fastReading(i, 0));
+  odometry.pass(51, *odometry.track().at(51));
+  odometry.add(fastReading(48, 0));
+  for (int i = 51; i <= 100; ++i) {
+    OdometryReading reading = fastReading(i, 0);
+    reading.pose.x += 1000;
+    odometry.add(reading);
+  }
+  EXPECT_NEAR(odometry.motionTo(52, *odometry.track().at(52))->mean.x, 10, 1e-9);
+  EXPECT_EQ(odometry.track().jumps(), 1u);
 }
 
 /// Hours without a scan must not fill the memory.

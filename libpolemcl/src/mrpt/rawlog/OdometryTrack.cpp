@@ -32,10 +32,12 @@ void OdometryTrack::add(double time, const Pose2D& pose) {
 bool OdometryTrack::isJump(double time, const Pose2D& pose) const {
   if (m_readings.empty() || time < m_readings.rbegin()->first) return false;
   const auto& [last, before] = *m_readings.rbegin();
-  const Pose2D step = relative(before, pose);
-  const double dt = time - last;
-  return std::hypot(step.x, step.y) > kNearestJump + kFastest * dt ||
-         std::abs(step.yaw) > kLeastTurn + kFastestTurn * dt;
+  return isTooFast(relative(before, pose), time - last);
+}
+
+bool OdometryTrack::isTooFast(const Pose2D& step, double seconds) {
+  return std::hypot(step.x, step.y) > kNearestJump + kFastest * seconds ||
+         std::abs(step.yaw) > kLeastTurn + kFastestTurn * seconds;
 }
 
 std::optional<Pose2D> OdometryTrack::at(double time) const {

@@ -29,6 +29,12 @@ class OdometryTrack {
   static constexpr double kLongestGap = 2;
 
   void add(double time, const Pose2D& pose);
+  /// \brief Whether such a reading would be a jump.
+  bool jumpsTo(double time, const Pose2D& pose) const {
+    return isJump(time, compose(m_origin, pose));
+  }
+  /// \brief Whether a step (m, rad) is one that no vehicle makes. \param seconds Its time.
+  static bool isTooFast(const Pose2D& step, double seconds);
   /// \brief Number of jumps so far.
   std::size_t jumps() const { return m_jumps; }
   bool empty() const { return m_readings.empty(); }
