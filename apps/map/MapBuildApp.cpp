@@ -12,6 +12,7 @@
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
+#include "map/DriveDoubts.h"
 #include "map/DriveFixFiles.h"
 #include "map/DrivePoses.h"
 #include "map/TimingDoubt.h"
@@ -377,6 +378,11 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
 
 std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job) {
   std::vector<std::string> warnings = summary.timingDoubts;
+  const auto doubt = [&](std::size_t drive, const std::string& text) {
+    if (!text.empty()) warnings.push_back(job.inputs[drive].filename().string() + ": " + text);
+  };
+  for (std::size_t i = 0; i < summary.filled.size(); ++i)
+    doubt(i, odometryDoubt(summary.filled[i]));
   for (std::size_t i = 0; i < summary.motions.size(); ++i)
     if (summary.motions[i].contradicts())
       warnings.push_back(job.inputs[i].filename().string() + ": " + summary.motions[i].verdict() +

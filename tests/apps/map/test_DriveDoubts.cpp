@@ -1,0 +1,67 @@
+/// \file test_DriveDoubts.cpp
+/// \brief pole-map build without true poses: what it says of an odometry that is wrong.
+
+#include "io/data/Trajectory.h"
+#include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
+#include "map/MapApp.h"
+#include "support/ExpectHas.h"
+#include "support/StreetTest.h"
+
+namespace polemcl::test_drive_doubts {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+class DriveDoubts : public StreetTest {
+ protected:
+  Outcome build(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{
+        "build",    "--config",           config(),       "--input",      at("in.rawlog"),
+        "--output", at("street.polemap"), "--trajectory", at("found.tum")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(mapMain, arguments);
+  }
+  std::map<std::string, std::string> info() const {
+    return io::readPoleMap(folder / "street.polemap").info;
+  }
+  void expectRightPlaces() const {
+    const auto truth = io::readPlanarTum(folder / "in.tum"),
+               found = io::readPlanarTum(folder / "found.tum");
+    ASSERT_EQ(found.size(), truth.size());
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      EXPECT_NEAR(found[i].pose.x, truth[i].pose.x, 0.1) << i;
+      EXPECT_NEAR(found[i].pose.y, truth[i].pose.y, 0.1) << i;
+    }
+  }
+};
+
+}  // namespace
+
+TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
+  writeStreet(folder / "in", 30);
+  import("in");
+  const auto right = build();
+  ASSERT_EQ(right.code, 0) << right.err;
+  EXPECT_EQ(right.err, "");
+  EXPECT_EQ(info().count("warnings"), 0u);
+  std::string rows;
+  std::size_t row = 0;
+  for (const std::string& line : io::readLines(folder / "in" / "odometry.txt"))
+    rows += (++row == 15 ? "2.7 0 0 0.02 0.01 0.003" : line) + '\n';
+  writeText(folder / "in" / "odometry.txt", rows);
+  import("in");
+  const auto slipped = build();
+  ASSERT_EQ(slipped.code, 0) << slipped.err;
+  EXPECT_HAS(slipped.err,
+             "warning: in.rawlog: the poles contradict 1 motion of its odometry, the "
+             "first at 53.000 s");
+  EXPECT_HAS(info().at("warnings"), "in.rawlog: the poles contradict 1 motion");
+  EXPECT_EQ(slipped.out.find("no odometry leads"), std::string::npos) << slipped.out;
+  expectRightPlaces();
+}
+
+}  // namespace polemcl::test_drive_doubts
