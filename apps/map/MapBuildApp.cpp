@@ -203,6 +203,16 @@ double countIn(const std::map<std::string, std::string>& info, const std::string
   return fact == info.end() ? 0 : io::parseNumber(fact->second).value_or(0);
 }
 
+/// Positions from satellites of all drives; their distance is not summed up.
+FixFit allFixes(const MappedDrives& mapped) {
+  FixFit sum;
+  for (const FixFit& fit : mapped.fixes) {
+    sum.given += fit.given;
+    sum.fitting += fit.fitting;
+  }
+  return sum;
+}
+
 std::map<std::string, std::string> facts(const AllSettings& settings,
                                          const MapBuildSummary& summary, const MapBuildJob& job,
                                          const std::optional<io::Datum>& datum,
@@ -228,7 +238,8 @@ std::map<std::string, std::string> facts(const AllSettings& settings,
   if (summary.mapped) {
     info["poses"] = "odometry";
     info["loops"] = std::to_string(summary.mapped->loops.size());
-    if (summary.mapped->fixes > 0) info["fixes"] = std::to_string(summary.mapped->fixes);
+    if (const std::size_t used = allFixes(*summary.mapped).fitting; used > 0)
+      info["fixes"] = std::to_string(used);
   }
   if (summary.inventory) info["pose_sigma_m"] = io::fixed(summary.inventory->drives.sigma, 4);
   if (!job.add) return info;
@@ -247,6 +258,7 @@ double sigmaOf(const PoseWithCovariance& pose) {
 
 std::string foundText(const MapBuildSummary& summary, const MapBuildJob& job) {
   const MappedDrives& mapped = *summary.mapped;
+  const FixFit fixes = allFixes(mapped);
   std::ostringstream out;
   const bool alone = std::all_of(summary.filled.begin(), summary.filled.end(),
                                  [](const FilledMotions& filled) { return filled.all; });
@@ -254,15 +266,19 @@ std::string foundText(const MapBuildSummary& summary, const MapBuildJob& job) {
       << " poles followed over " << io::fixed(mapped.driven, 1) << " m; " << mapped.loops.size()
       << " places passed again; the last pose is certain to "
       << io::fixed(sigmaOf(mapped.poses.back()), 2)
-      << (mapped.fixes + mapped.known > 0 ? " m\n" : " m against the first\n");
-  if (mapped.fixes > 0)
-    out << "placed by " << mapped.fixes
+      << (fixes.given + mapped.known > 0 ? " m\n" : " m against the first\n");
+  if (fixes.given > 0)
+    out << "placed by " << fixes.fitting
         << " positions from satellites; the first pose is certain to "
         << io::fixed(sigmaOf(mapped.poses.at(mapped.known)), 2) << " m\n";
   for (std::size_t i = 0; i < mapped.odometry.size(); ++i) {
     const FilledMotions& filled = summary.filled[i];
     const std::size_t missing = filled.byPoles + filled.coasted;
     const std::string drive = job.inputs[i].filename().string();
+    if (mapped.fixes[i].given > 0)
+      out << drive << ": its " << mapped.fixes[i].given << " positions from satellites lie "
+          << io::fixed(mapped.fixes[i].distance, 2) << " m from its path (median), "
+          << mapped.fixes[i].given - mapped.fixes[i].fitting << " of them do not fit\n";
     if (missing > 0)
       out << drive << ": no odometry leads to " << missing << " scans; the poles told the way to "
           << filled.byPoles
@@ -288,8 +304,9 @@ MappedDrives findPosesOf(std::vector<MappingSession>& drives, const MapBuildJob&
   auto fixes =
       usable ? readDriveFixes(job, drives, before.scans(), plane) : std::vector<DriveFix>();
   MappedDrives mapped = findPoses(drives, job.inputs, before, std::move(fixes), settings);
-  if (mapped.fixes > 0) datum = plane;
-  if (!job.gnss.empty() && mapped.fixes == 0)
+  const bool placed = allFixes(mapped).given > 0;
+  if (placed) datum = plane;
+  if (!job.gnss.empty() && !placed)
     throw Error(job.gnss.front().string() +
                 ": its fixes are too few, or too near to each other, to place a drive: five are "
                 "needed, over 40 m; leave out --gnss");
@@ -383,6 +400,8 @@ std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const Map
   };
   for (std::size_t i = 0; i < summary.filled.size(); ++i)
     doubt(i, odometryDoubt(summary.filled[i]));
+  for (std::size_t i = 0; summary.mapped && i < summary.mapped->fixes.size(); ++i)
+    doubt(i, fixesDoubt(summary.mapped->fixes[i]));
   for (std::size_t i = 0; i < summary.motions.size(); ++i)
     if (summary.motions[i].contradicts())
       warnings.push_back(job.inputs[i].filename().string() + ": " + summary.motions[i].verdict() +

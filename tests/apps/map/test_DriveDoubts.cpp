@@ -1,6 +1,9 @@
 /// \file test_DriveDoubts.cpp
 /// \brief pole-map build without true poses: what it says of an odometry that is wrong.
 
+#include <functional>
+
+#include "cli/MapPlane.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
@@ -24,6 +27,22 @@ class DriveDoubts : public StreetTest {
         "--output", at("street.polemap"), "--trajectory", at("found.tum")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(mapMain, arguments);
+  }
+  void driveWithFixes(std::size_t scans) {
+    writeStreet(folder / "in", scans);
+    import("in");
+    writeFixes([](double x) { return x; });
+  }
+  /// A fix just after each scan. \param along What the receiver says of the x of the truth.
+  void writeFixes(const std::function<double(double)>& along) {
+    std::string fixes = "time,latitude,longitude,sigma\n";
+    const MapPlane plane({48, 9, 0});
+    for (const StampedPose2D& at : io::readPlanarTum(folder / "in.tum")) {
+      const Eigen::Vector2d lonLat = plane.lonLat({100 + along(at.pose.x), 50 + at.pose.y});
+      fixes += io::fixed(at.time + 0.01, 3) + ',' + io::fixed(lonLat.y(), 10) + ',' +
+               io::fixed(lonLat.x(), 10) + ",0.02\n";
+    }
+    writeText(folder / "fixes.csv", fixes);
   }
   std::map<std::string, std::string> info() const {
     return io::readPoleMap(folder / "street.polemap").info;
@@ -62,6 +81,24 @@ TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
   EXPECT_HAS(info().at("warnings"), "in.rawlog: the poles contradict 1 motion");
   EXPECT_EQ(slipped.out.find("no odometry leads"), std::string::npos) << slipped.out;
   expectRightPlaces();
+}
+
+TEST_F(DriveDoubts, PositionsOfAnotherClockAreTold) {
+  driveWithFixes(60);
+  const auto right = build({"--gnss", at("fixes.csv")});
+  ASSERT_EQ(right.code, 0) << right.err;
+  EXPECT_EQ(right.err, "");
+  EXPECT_HAS(right.out, "placed by 59 positions from satellites;");
+  EXPECT_HAS(right.out, "in.rawlog: its 59 positions from satellites lie 0.0");
+  EXPECT_HAS(right.out, "m from its path (median), 0 of them do not fit");
+  EXPECT_EQ(info().at("fixes"), "59");
+  writeFixes([](double x) { return x < 25 ? x : std::min(2 * x - 25, 55.0); });
+  const auto late = build({"--gnss", at("fixes.csv")});
+  ASSERT_EQ(late.code, 0) << late.err;
+  EXPECT_HAS(late.err, "of 59 positions from satellites do not fit its path, they lie ");
+  EXPECT_HAS(late.err, "clock (GPS time is 18 s ahead of UTC)");
+  EXPECT_HAS(info().at("warnings"), "do not fit its path");
+  EXPECT_LT(std::stoi(info().at("fixes")), 45);
 }
 
 }  // namespace polemcl::test_drive_doubts

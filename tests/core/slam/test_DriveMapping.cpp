@@ -322,7 +322,12 @@ TEST(DriveMapping, PositionsFromSatellitesPlaceADrive) {
           compose(start, {way, (dice.uniform() < 0.5 ? -1 : 1) * dice.uniform(4, 10), 0})));
     const Drive drive(800, straight, poles, seed, start);
     const MappedDrives found = map({drive}, 0, fixesOf(drive, {0.5, -0.3}, 0, dice));
-    EXPECT_EQ(found.fixes, drive.truth.size() - 1);
+    ASSERT_EQ(found.fixes.size(), 1u);
+    EXPECT_EQ(found.fixes[0].given, drive.truth.size() - 1);
+    // Each tenth is 40 m off, and one of a hundred is beyond three sigmas.
+    EXPECT_NEAR(static_cast<double>(found.fixes[0].fitting),
+                0.9 * 0.989 * static_cast<double>(found.fixes[0].given), 30);
+    EXPECT_LT(found.fixes[0].distance, 6);
     shape += drive.worst(found) / 4;
     for (std::size_t i = 0; i < drive.truth.size(); ++i) {
       const Pose2D &right = drive.truth[i], &pose = found.poses[i].mean;

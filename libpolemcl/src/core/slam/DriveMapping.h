@@ -40,8 +40,10 @@ struct MappedDrives {
   std::vector<Eigen::Vector2d> odometry;  ///< scale error and yaw bias (rad/m) of each other drive
   std::vector<ClosedLoop> loops;
   std::size_t tracks = 0;  ///< poles seen in three scans or more, once for each time passed
-  std::size_t fixes = 0;   ///< positions from satellites that were used; 0: the frame is not theirs
-  double driven = 0;       ///< by the drives whose poses were not known, m
+  /// How the positions from satellites fit, of each other drive. None given: the frame is not
+  /// theirs.
+  std::vector<FixFit> fixes;
+  double driven = 0;  ///< by the drives whose poses were not known, m
 };
 
 /// \brief Finds the poses.
