@@ -310,6 +310,11 @@ MappedDrives findPosesOf(std::vector<MappingSession>& drives, const MapBuildJob&
     throw Error(job.gnss.front().string() +
                 ": its fixes are too few, or too near to each other, to place a drive: five are "
                 "needed, over 40 m; leave out --gnss");
+  // The frame is that of the first scan: a datum would place it elsewhere on Earth.
+  if (job.datum && !job.add && !placed)
+    throw Error("--datum " + io::datumText(*job.datum) +
+                ": no drive has five positions from satellites over 40 m, which place the map "
+                "there; give --gnss or --truth, or leave out --datum");
   return mapped;
 }
 

@@ -101,4 +101,12 @@ TEST_F(DriveDoubts, PositionsOfAnotherClockAreTold) {
   EXPECT_LT(std::stoi(info().at("fixes")), 45);
 }
 
+TEST_F(DriveDoubts, ADatumNeedsPositionsThatPlaceTheMapThere) {
+  driveWithFixes(60);
+  expectFailure(build({"--datum", "48,9"}), {"--datum 48,9,0: no drive has five positions",
+                                             "--gnss or --truth", "leave out --datum"});
+  EXPECT_FALSE(fs::exists(folder / "street.polemap"));
+  EXPECT_EQ(build({"--datum", "48,9", "--gnss", at("fixes.csv")}).code, 0);
+}
+
 }  // namespace polemcl::test_drive_doubts
