@@ -279,6 +279,9 @@ std::string foundText(const MapBuildSummary& summary, const MapBuildJob& job) {
       out << drive << ": its " << mapped.fixes[i].given << " positions from satellites lie "
           << io::fixed(mapped.fixes[i].distance, 2) << " m from its path (median), "
           << mapped.fixes[i].given - mapped.fixes[i].fitting << " of them do not fit\n";
+    if (i < summary.fixesApart.size() && summary.fixesApart[i] > 0)
+      out << drive << ": left out " << summary.fixesApart[i]
+          << " positions from satellites between scans more than 2 s and 10 m apart\n";
     if (missing > 0)
       out << drive << ": no odometry leads to " << missing << " scans; the poles told the way to "
           << filled.byPoles
@@ -295,15 +298,15 @@ std::string foundText(const MapBuildSummary& summary, const MapBuildJob& job) {
 /// rawlog may be of no use; a table of them must not.
 MappedDrives findPosesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
                          const AddedSessions& before, std::optional<io::Datum>& datum,
-                         const AllSettings& settings) {
+                         const AllSettings& settings, std::vector<std::size_t>& fixesApart) {
   const bool usable = !job.add || datum;
   if (!usable && !job.gnss.empty())
     throw Error(job.add->string() +
                 ": has no datum, so that fixes cannot be placed on it; leave out --gnss");
   auto plane = datum;
-  auto fixes =
-      usable ? readDriveFixes(job, drives, before.scans(), plane) : std::vector<DriveFix>();
-  MappedDrives mapped = findPoses(drives, job.inputs, before, std::move(fixes), settings);
+  ReadFixes read = usable ? readDriveFixes(job, drives, before.scans(), plane) : ReadFixes();
+  fixesApart = std::move(read.apart);
+  MappedDrives mapped = findPoses(drives, job.inputs, before, std::move(read.fixes), settings);
   const bool placed = allFixes(mapped).given > 0;
   if (placed) datum = plane;
   if (!job.gnss.empty() && !placed)
@@ -328,7 +331,7 @@ void mapDrivesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
     summary.filled.push_back(drive.filled);
     dead.push_back(remainingTiming(drive, timing.seconds));
   }
-  summary.mapped = findPosesOf(drives, job, before, datum, settings);
+  summary.mapped = findPosesOf(drives, job, before, datum, settings, summary.fixesApart);
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const std::string doubt =
         timingDoubt(dead[i], remainingTiming(drives[i], timing.seconds), timing);

@@ -44,6 +44,33 @@ class DriveDoubts : public StreetTest {
     }
     writeText(folder / "fixes.csv", fixes);
   }
+  /// Takes scans out of the rawlog; the odometry tells the way over the gap.
+  void leaveOut(std::size_t begin, std::size_t end) {
+    const auto truth = io::readPlanarTum(folder / "in.tum");
+    const auto keep = [&](const char* name, std::size_t shift, const std::string& over) {
+      const auto lines = io::readLines(folder / "in" / name);
+      std::string kept;
+      for (std::size_t i = 0; i < lines.size(); ++i)
+        if (i + shift < begin || i + shift > end || (i + shift == end && over.empty()))
+          kept += lines[i] + '\n';
+        else if (i + shift == end)
+          kept += over;
+      writeText(folder / "in" / name, kept);
+    };
+    const Pose2D way = relative(truth[begin - 1].pose, truth[end].pose);
+    keep("times.txt", 0, "");
+    keep("poses.txt", 0, "");
+    keep("odometry.txt", 1,
+         io::fixed(way.x, 9) + ' ' + io::fixed(way.y, 9) + ' ' + io::fixed(way.yaw, 9) +
+             " 0.02 0.01 0.003\n");
+    const fs::path scans = folder / "in" / "velodyne";
+    for (std::size_t i = begin; i < truth.size(); ++i)
+      if (i + end - begin < truth.size())
+        fs::rename(scans / scanName(i + end - begin), scans / scanName(i));
+      else
+        fs::remove(scans / scanName(i));
+    import("in");
+  }
   std::map<std::string, std::string> info() const {
     return io::readPoleMap(folder / "street.polemap").info;
   }
@@ -107,6 +134,36 @@ TEST_F(DriveDoubts, ADatumNeedsPositionsThatPlaceTheMapThere) {
                                              "--gnss or --truth", "leave out --datum"});
   EXPECT_FALSE(fs::exists(folder / "street.polemap"));
   EXPECT_EQ(build({"--datum", "48,9", "--gnss", at("fixes.csv")}).code, 0);
+}
+
+/// Key frames of a slow robot, a metre and 3 s apart.
+TEST_F(DriveDoubts, PositionsBetweenScansThatAreLateButNearAreUsed) {
+  driveWithFixes(60);
+  std::string slow;
+  for (int i = 0; i < 60; ++i) slow += std::to_string(50 + 3 * i) + '\n';
+  writeText(folder / "in" / "times.txt", slow);
+  import("in");
+  writeFixes([](double x) { return x; });
+  const auto near = build({"--gnss", at("fixes.csv")});
+  ASSERT_EQ(near.code, 0) << near.err;
+  EXPECT_HAS(near.out, "placed by 59 positions");
+  EXPECT_EQ(near.out.find("left out"), std::string::npos) << near.out;
+}
+
+/// A gap of 15 m and 3 s, the scans 30 to 43.
+TEST_F(DriveDoubts, PositionsBetweenScansFarApartAreCounted) {
+  driveWithFixes(60);
+  leaveOut(30, 44);
+  const auto gap = build({"--gnss", at("fixes.csv")});
+  ASSERT_EQ(gap.code, 0) << gap.err;
+  EXPECT_HAS(gap.out, "placed by 44 positions");
+  EXPECT_HAS(gap.out,
+             "in.rawlog: left out 15 positions from satellites between scans more than 2 s and 10 "
+             "m apart");
+  const auto rows = io::readLines(folder / "fixes.csv");
+  writeText(folder / "few.csv", rows[0] + '\n' + rows[33] + '\n' + rows[34] + '\n');
+  expectFailure(build({"--gnss", at("few.csv")}),
+                {"few.csv: all 2 of its positions", "more than 2 s and 10 m apart"});
 }
 
 }  // namespace polemcl::test_drive_doubts
