@@ -237,7 +237,7 @@ std::map<std::string, std::string> facts(const AllSettings& settings,
   keepWarnings(buildWarnings(summary, job), info);
   if (summary.mapped) {
     info["poses"] = "odometry";
-    info["loops"] = std::to_string(summary.mapped->loops.size());
+    info["loops"] = std::to_string(summary.mapped->newLoops());
     if (const std::size_t used = allFixes(*summary.mapped).fitting; used > 0)
       info["fixes"] = std::to_string(used);
   }
@@ -263,7 +263,7 @@ std::string foundText(const MapBuildSummary& summary, const MapBuildJob& job) {
   const bool alone = std::all_of(summary.filled.begin(), summary.filled.end(),
                                  [](const FilledMotions& filled) { return filled.all; });
   out << (alone ? "poses by " : "poses by odometry and ") << mapped.tracks
-      << " poles followed over " << io::fixed(mapped.driven, 1) << " m; " << mapped.loops.size()
+      << " poles followed over " << io::fixed(mapped.driven, 1) << " m; " << mapped.newLoops()
       << " places passed again; the last pose is certain to "
       << io::fixed(sigmaOf(mapped.poses.back()), 2)
       << (fixes.given + mapped.known > 0 ? " m\n" : " m against the first\n");

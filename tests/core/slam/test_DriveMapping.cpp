@@ -267,8 +267,9 @@ TEST(DriveMapping, RefusesDrivesOfDifferentPlaces) {
 }
 
 /// A drive round a ring in UTM, with poses that are known.
-Drive knownRing(const std::vector<Eigen::Vector2d>& poles, const Pose2D& start) {
-  Drive drive(440, ring(70), poles, 5, start);
+Drive knownRing(const std::vector<Eigen::Vector2d>& poles, const Pose2D& start,
+                double length = 440) {
+  Drive drive(length, ring(70), poles, 5, start);
   for (std::size_t i = 0; i < drive.scans.size(); ++i) {
     drive.scans[i].pose_map_robot = drive.truth[i];
     if (i > 0)
@@ -308,6 +309,17 @@ TEST(DriveMapping, AddsADriveToPosesThatAreKnown) {
     const Eigen::Matrix3d more = bent.poses[i].covariance - mapped.poses[i].covariance;
     ASSERT_LT((more - expected * Eigen::Matrix3d::Identity()).norm(), 5e-4) << i;
   }
+}
+
+TEST(DriveMapping, LoopsOfKnownDrivesAreNotNew) {
+  const auto poles = ringPoles(70, 71);
+  const Drive before = knownRing(poles, {}, 560);
+  const MappedDrives mapped = map({before, Drive(200, ring(70), poles, 6)}, before.scans.size());
+  std::size_t closed = 0;  // by the added drive
+  for (const ClosedLoop& loop : mapped.loops) closed += loop.second >= before.scans.size() ? 1 : 0;
+  EXPECT_GT(closed, 0u);
+  EXPECT_LT(closed, mapped.loops.size()) << "1.27 times round, the ring closes loops of its own";
+  EXPECT_EQ(mapped.newLoops(), closed);
 }
 
 /// Drives that pass no place again: satellites say where they are, and keep them from bending.

@@ -280,6 +280,13 @@ MappedDrives DriveMapping::result() const {
 
 }  // namespace
 
+std::size_t MappedDrives::newLoops() const {
+  const auto count = std::count_if(loops.begin(), loops.end(), [this](const ClosedLoop& loop) {
+    return std::max(loop.first, loop.second) >= known;
+  });
+  return static_cast<std::size_t>(count);
+}
+
 MappedDrives mapDrives(DrivesToMap drives, const AdjustmentTrust& trust) {
   return DriveMapping(std::move(drives), trust).run();
 }
