@@ -22,6 +22,7 @@ struct MotionEvalOptions : EvalOptions {
 /// scan, m and rad.
 struct Stretch {
   std::size_t scan = 0;  ///< 0-based index of the first scan
+  double time = 0;       ///< of the scan after it, s
   Pose2D truth;
   std::optional<Pose2D> odometry;  ///< none where the rawlog has none
   ScanRegistration poles;  ///< from the true motion on; fewer than 3 pairs: the poles do not tell
@@ -41,8 +42,8 @@ std::vector<Stretch> readStretches(const MotionEvalOptions& options) {
     const auto poles = truth.deskewed(scan);
     if (scan.index > 0) {
       const Pose2D motion = relative(poseBefore, pose);
-      stretches.push_back(
-          {scan.index - options.every, motion, odometry, motionOfPoles(before, poles, motion)});
+      stretches.push_back({scan.index - options.every, scan.time, motion, odometry,
+                           motionOfPoles(before, poles, motion)});
     }
     before = poles;
     poseBefore = pose;
@@ -78,7 +79,7 @@ Figures motionFigures(const MotionEvalOptions& options) {
     rows.push_back(row);
     text += filled("{scan:5.0}", row) + cells(row["truth"]) + cells(row["odometry"]) +
             cells(tell ? row["poles"] : Json()) + filled("{pairs:7.0}\n", row);
-    check.add(stretch.poles, truth);
+    check.add(stretch.poles, truth, stretch.time);
     if (!tell) continue;
     way += std::hypot(truth.x, truth.y);
     metres += std::hypot(poles.x, poles.y) - std::hypot(truth.x, truth.y);

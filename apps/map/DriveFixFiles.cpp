@@ -1,6 +1,7 @@
 #include "map/DriveFixFiles.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cli/MapPlane.h"
 #include "core/common/Statistics.h"
@@ -12,15 +13,28 @@ namespace polemcl::apps {
 namespace {
 
 constexpr double kFixesWithin = 5e4;  ///< m, of a drive from its middle, and of this from the datum
+/// m: over a longer way between two scans, nobody knows where the vehicle was in 2 s or more.
+constexpr double kShortWay = 10;
 
-/// The scan before the fix, and how far it is on the way to the next one.
-std::optional<DriveFix> between(const GnssFix& fix, const MappingSession& drive) {
+using PathPlace = std::vector<StampedPose2D>::const_iterator;
+
+/// The first scan after the fix; the end where no scan is before it or after it.
+PathPlace scanAfter(const GnssFix& fix, const MappingSession& drive) {
   const auto next =
       std::upper_bound(drive.path.begin(), drive.path.end(), fix.time,
                        [](double time, const StampedPose2D& pose) { return time < pose.time; });
-  if (next == drive.path.begin() || next == drive.path.end()) return std::nullopt;
+  return next == drive.path.begin() ? drive.path.end() : next;
+}
+
+/// Two scans between which a place cannot be told.
+bool areApart(const StampedPose2D& before, const StampedPose2D& next) {
+  return next.time - before.time > longestTruthGap &&
+         std::hypot(next.pose.x - before.pose.x, next.pose.y - before.pose.y) > kShortWay;
+}
+
+/// The scan before the fix, and how far it is on the way to the next one.
+DriveFix between(const GnssFix& fix, const MappingSession& drive, PathPlace next) {
   const auto before = std::prev(next);
-  if (next->time - before->time > longestTruthGap) return std::nullopt;
   DriveFix placed;
   placed.time = fix.time;
   placed.scan = static_cast<std::size_t>(before - drive.path.begin());
@@ -70,35 +84,49 @@ void requireNear(const io::Datum& datum, const GnssFix& fix, const std::filesyst
               " of the map; are they of this place? Without them: " + without);
 }
 
+[[noreturn]] void refuseTable(const std::filesystem::path& file, const MappingSession& drive,
+                              std::size_t apart) {
+  if (apart > 0)
+    throw Error(file.string() + ": all " + std::to_string(apart) +
+                " of its positions in the time of the rawlog lie between scans more than 2 s and "
+                "10 m apart; use more of the scans, or leave out --gnss");
+  throw Error(file.string() + ": none of its times is within those of the rawlog (" +
+              io::fixed(drive.path.front().time, 3) + " to " +
+              io::fixed(drive.path.back().time, 3) + " s)");
+}
+
 }  // namespace
 
-std::vector<DriveFix> readDriveFixes(const MapBuildJob& job,
-                                     const std::vector<MappingSession>& drives,
-                                     std::size_t firstScan, std::optional<io::Datum>& datum) {
-  std::vector<DriveFix> fixes;
+ReadFixes readDriveFixes(const MapBuildJob& job, const std::vector<MappingSession>& drives,
+                         std::size_t firstScan, std::optional<io::Datum>& datum) {
+  ReadFixes read;
+  std::vector<DriveFix>& fixes = read.fixes;
   std::optional<MapPlane> plane;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const std::size_t known = fixes.size();
+    read.apart.push_back(0);
     const bool table = !job.gnss.empty();
     const auto& file = table ? job.gnss[i] : job.inputs[i];
     for (const GnssFix& fix : fixesOf(job, i)) {
-      auto placed = between(fix, drives[i]);
-      if (!placed) continue;
+      const auto next = scanAfter(fix, drives[i]);
+      if (next == drives[i].path.end()) continue;
+      if (areApart(*std::prev(next), *next)) {
+        ++read.apart.back();
+        continue;
+      }
       if (!datum) datum = io::Datum{fix.latitude, fix.longitude, 0};
       if (fixes.size() == known)
         requireNear(*datum, fix, file, table ? "leave out --gnss" : "--no-gnss");
-      placed->scan += firstScan;
+      DriveFix placed = between(fix, drives[i], next);
+      placed.scan += firstScan;
       if (!plane) plane.emplace(*datum);
-      placed->position = plane->place({fix.longitude, fix.latitude});
-      fixes.push_back(*placed);
+      placed.position = plane->place({fix.longitude, fix.latitude});
+      fixes.push_back(placed);
     }
-    if (table && fixes.size() == known)
-      throw Error(file.string() + ": none of its times is within those of the rawlog (" +
-                  io::fixed(drives[i].path.front().time, 3) + " to " +
-                  io::fixed(drives[i].path.back().time, 3) + " s)");
+    if (table && fixes.size() == known) refuseTable(file, drives[i], read.apart.back());
     firstScan += drives[i].scans.size();
   }
-  return fixes;
+  return read;
 }
 
 }  // namespace polemcl::apps

@@ -12,16 +12,21 @@
 
 namespace polemcl::apps {
 
+/// \brief Fixes that were read.
+struct ReadFixes {
+  std::vector<DriveFix> fixes;     ///< by scans
+  std::vector<std::size_t> apart;  ///< of each drive: left out, their scans are too far apart
+};
+
 /// \brief Reads the fixes of drives onto the plane of a datum: of the tables (readGnssCsv()), or
-/// without tables those in the rawlogs (readGnssFixes()). Those before the first scan, after the
-/// last one, or between scans more than 2 s apart are left out, as are those more than 50 km from
-/// the median place of their file.
+/// without tables those in the rawlogs (readGnssFixes()). Those before the first scan or after the
+/// last one are left out, as are those between scans more than 2 s and 10 m apart, and those more
+/// than 50 km from the median place of their file.
 /// \param firstScan Number of the first scan of these drives.
 /// \param datum If none is given: becomes the first fix.
-/// \throws Error as the readers; when no fix of a table lies within its drive; when the fixes of a
-/// drive are more than 50 km from the datum.
-std::vector<DriveFix> readDriveFixes(const MapBuildJob& job,
-                                     const std::vector<MappingSession>& drives,
-                                     std::size_t firstScan, std::optional<io::Datum>& datum);
+/// \throws Error as the readers; when no fix of a table lies within its drive, or all of these
+/// between scans too far apart; when the fixes of a drive are more than 50 km from the datum.
+ReadFixes readDriveFixes(const MapBuildJob& job, const std::vector<MappingSession>& drives,
+                         std::size_t firstScan, std::optional<io::Datum>& datum);
 
 }  // namespace polemcl::apps

@@ -139,7 +139,9 @@ MapPole poleOf(const Feature& feature, const MapPlane& plane) {
   return pole;
 }
 
-PoleHistory historyOf(const Feature& feature) {
+/// A pole without one, drawn by hand, has that of a pole of a map without histories.
+PoleHistory historyOf(const Feature& feature, const MapPole& pole) {
+  if (!feature.has("existence")) return landmarksFrom({pole}).poles.front().history;
   PoleHistory history;
   feature.take("existence", history.existence);
   feature.take("seen", history.seen);
@@ -238,6 +240,7 @@ io::PoleMapData readGeoJson(const std::filesystem::path& file,
   if (!origin) throw Error(where + "no datum in it; say where the map's origin is with --datum");
   const MapPlane plane(*origin);
   std::size_t others = 0, number = 0;
+  bool hasHistories = false;
   for (const Json& entry : json["features"]) {
     const Feature feature(entry, where + "feature " + std::to_string(number++) + ": ");
     if (!feature.isPoint()) {
@@ -245,10 +248,11 @@ io::PoleMapData readGeoJson(const std::filesystem::path& file,
       continue;
     }
     map.poles.push_back(poleOf(feature, plane));
-    if (feature.has("existence")) map.histories.push_back(historyOf(feature));
+    map.histories.push_back(historyOf(feature, map.poles.back()));
+    hasHistories |= feature.has("existence");
   }
   if (map.poles.empty()) throw Error(where + "no point in it" + othersText(others));
-  if (map.histories.size() != map.poles.size()) map.histories.clear();
+  if (!hasHistories) map.histories.clear();
   if (left) *left = others;
   return map;
 }

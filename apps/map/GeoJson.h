@@ -24,9 +24,10 @@ namespace polemcl {
 void writeGeoJson(const std::filesystem::path& file, const io::PoleMapData& map);
 
 /// \brief Reads the points of a FeatureCollection. What a point does not tell gets defaults: radius
-/// 0.1, bottom 0 and top 0 (not known), confidence 1, count 1, covariance 0.01 m² each way; points
-/// have histories if all of them tell an existence. A MultiPoint of one point is a point. Other
-/// geometries are left out.
+/// 0.1, bottom 0 and top 0 (not known), confidence 1, count 1, covariance 0.01 m² each way. If one
+/// of them tells an existence, all have histories; one that does not tell it (a pole added by hand)
+/// has that of landmarksFrom(). A MultiPoint of one point is a point. Other geometries are left
+/// out.
 /// \param datum Where the file has none; must be the same where it has one.
 /// \param left If given: how many features were no points.
 /// \throws Error naming the feature: not GeoJSON, no point in it, numbers that are none or out of

@@ -12,6 +12,7 @@
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
+#include "map/DriveDoubts.h"
 #include "map/DriveFixFiles.h"
 #include "map/DrivePoses.h"
 #include "map/TimingDoubt.h"
@@ -202,6 +203,16 @@ double countIn(const std::map<std::string, std::string>& info, const std::string
   return fact == info.end() ? 0 : io::parseNumber(fact->second).value_or(0);
 }
 
+/// Positions from satellites of all drives; their distance is not summed up.
+FixFit allFixes(const MappedDrives& mapped) {
+  FixFit sum;
+  for (const FixFit& fit : mapped.fixes) {
+    sum.given += fit.given;
+    sum.fitting += fit.fitting;
+  }
+  return sum;
+}
+
 std::map<std::string, std::string> facts(const AllSettings& settings,
                                          const MapBuildSummary& summary, const MapBuildJob& job,
                                          const std::optional<io::Datum>& datum,
@@ -226,8 +237,9 @@ std::map<std::string, std::string> facts(const AllSettings& settings,
   keepWarnings(buildWarnings(summary, job), info);
   if (summary.mapped) {
     info["poses"] = "odometry";
-    info["loops"] = std::to_string(summary.mapped->loops.size());
-    if (summary.mapped->fixes > 0) info["fixes"] = std::to_string(summary.mapped->fixes);
+    info["loops"] = std::to_string(summary.mapped->newLoops());
+    if (const std::size_t used = allFixes(*summary.mapped).fitting; used > 0)
+      info["fixes"] = std::to_string(used);
   }
   if (summary.inventory) info["pose_sigma_m"] = io::fixed(summary.inventory->drives.sigma, 4);
   if (!job.add) return info;
@@ -246,22 +258,30 @@ double sigmaOf(const PoseWithCovariance& pose) {
 
 std::string foundText(const MapBuildSummary& summary, const MapBuildJob& job) {
   const MappedDrives& mapped = *summary.mapped;
+  const FixFit fixes = allFixes(mapped);
   std::ostringstream out;
   const bool alone = std::all_of(summary.filled.begin(), summary.filled.end(),
                                  [](const FilledMotions& filled) { return filled.all; });
   out << (alone ? "poses by " : "poses by odometry and ") << mapped.tracks
-      << " poles followed over " << io::fixed(mapped.driven, 1) << " m; " << mapped.loops.size()
+      << " poles followed over " << io::fixed(mapped.driven, 1) << " m; " << mapped.newLoops()
       << " places passed again; the last pose is certain to "
       << io::fixed(sigmaOf(mapped.poses.back()), 2)
-      << (mapped.fixes + mapped.known > 0 ? " m\n" : " m against the first\n");
-  if (mapped.fixes > 0)
-    out << "placed by " << mapped.fixes
+      << (fixes.given + mapped.known > 0 ? " m\n" : " m against the first\n");
+  if (fixes.given > 0)
+    out << "placed by " << fixes.fitting
         << " positions from satellites; the first pose is certain to "
         << io::fixed(sigmaOf(mapped.poses.at(mapped.known)), 2) << " m\n";
   for (std::size_t i = 0; i < mapped.odometry.size(); ++i) {
     const FilledMotions& filled = summary.filled[i];
     const std::size_t missing = filled.byPoles + filled.coasted;
     const std::string drive = job.inputs[i].filename().string();
+    if (mapped.fixes[i].given > 0)
+      out << drive << ": its " << mapped.fixes[i].given << " positions from satellites lie "
+          << io::fixed(mapped.fixes[i].distance, 2) << " m from its path (median), "
+          << mapped.fixes[i].given - mapped.fixes[i].fitting << " of them do not fit\n";
+    if (i < summary.fixesApart.size() && summary.fixesApart[i] > 0)
+      out << drive << ": left out " << summary.fixesApart[i]
+          << " positions from satellites between scans more than 2 s and 10 m apart\n";
     if (missing > 0)
       out << drive << ": no odometry leads to " << missing << " scans; the poles told the way to "
           << filled.byPoles
@@ -278,20 +298,26 @@ std::string foundText(const MapBuildSummary& summary, const MapBuildJob& job) {
 /// rawlog may be of no use; a table of them must not.
 MappedDrives findPosesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
                          const AddedSessions& before, std::optional<io::Datum>& datum,
-                         const AllSettings& settings) {
+                         const AllSettings& settings, std::vector<std::size_t>& fixesApart) {
   const bool usable = !job.add || datum;
   if (!usable && !job.gnss.empty())
     throw Error(job.add->string() +
                 ": has no datum, so that fixes cannot be placed on it; leave out --gnss");
   auto plane = datum;
-  auto fixes =
-      usable ? readDriveFixes(job, drives, before.scans(), plane) : std::vector<DriveFix>();
-  MappedDrives mapped = findPoses(drives, job.inputs, before, std::move(fixes), settings);
-  if (mapped.fixes > 0) datum = plane;
-  if (!job.gnss.empty() && mapped.fixes == 0)
+  ReadFixes read = usable ? readDriveFixes(job, drives, before.scans(), plane) : ReadFixes();
+  fixesApart = std::move(read.apart);
+  MappedDrives mapped = findPoses(drives, job.inputs, before, std::move(read.fixes), settings);
+  const bool placed = allFixes(mapped).given > 0;
+  if (placed) datum = plane;
+  if (!job.gnss.empty() && !placed)
     throw Error(job.gnss.front().string() +
                 ": its fixes are too few, or too near to each other, to place a drive: five are "
                 "needed, over 40 m; leave out --gnss");
+  // The frame is that of the first scan: a datum would place it elsewhere on Earth.
+  if (job.datum && !job.add && !placed)
+    throw Error("--datum " + io::datumText(*job.datum) +
+                ": no drive has five positions from satellites over 40 m, which place the map "
+                "there; give --gnss or --truth, or leave out --datum");
   return mapped;
 }
 
@@ -305,7 +331,7 @@ void mapDrivesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
     summary.filled.push_back(drive.filled);
     dead.push_back(remainingTiming(drive, timing.seconds));
   }
-  summary.mapped = findPosesOf(drives, job, before, datum, settings);
+  summary.mapped = findPosesOf(drives, job, before, datum, settings, summary.fixesApart);
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const std::string doubt =
         timingDoubt(dead[i], remainingTiming(drives[i], timing.seconds), timing);
@@ -377,6 +403,13 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
 
 std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job) {
   std::vector<std::string> warnings = summary.timingDoubts;
+  const auto doubt = [&](std::size_t drive, const std::string& text) {
+    if (!text.empty()) warnings.push_back(job.inputs[drive].filename().string() + ": " + text);
+  };
+  for (std::size_t i = 0; i < summary.filled.size(); ++i)
+    doubt(i, odometryDoubt(summary.filled[i]));
+  for (std::size_t i = 0; summary.mapped && i < summary.mapped->fixes.size(); ++i)
+    doubt(i, fixesDoubt(summary.mapped->fixes[i]));
   for (std::size_t i = 0; i < summary.motions.size(); ++i)
     if (summary.motions[i].contradicts())
       warnings.push_back(job.inputs[i].filename().string() + ": " + summary.motions[i].verdict() +

@@ -54,9 +54,11 @@ struct MapBuildSummary {
   std::vector<Session> sessions;                 ///< in their order, those of `add` first
   std::optional<InventoryAdjustment> inventory;  ///< when one was given
   std::optional<MappedDrives> mapped;            ///< when odometry stood for poses
-  std::vector<MotionCheck> motions;              ///< of each input, when its poses are a truth
-  std::vector<std::string> timingDoubts;         ///< sentences on inputs whose timing looks wrong
-  std::size_t twins = 0;                         ///< poles with another nearer than 1 m
+  /// Of each input, positions from satellites that were left out: their scans are too far apart.
+  std::vector<std::size_t> fixesApart;
+  std::vector<MotionCheck> motions;       ///< of each input, when its poses are a truth
+  std::vector<std::string> timingDoubts;  ///< sentences on inputs whose timing looks wrong
+  std::size_t twins = 0;                  ///< poles with another nearer than 1 m
 };
 
 /// \brief Builds the map, with a history of each pole for later updates, and writes the files of

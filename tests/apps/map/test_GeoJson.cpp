@@ -139,6 +139,19 @@ TEST_F(GeoJson, ReadsPointsOfOthers) {
   EXPECT_EQ(map.info.at("datum"), "50,8,0");
 }
 
+TEST_F(GeoJson, APoleAddedByHandKeepsTheOtherHistories) {
+  const std::string file =
+      write(points(point("8, 50", R"({"existence":0.95,"seen":7,"missed":2})") + "," +
+                   point("8.001, 50", R"({"count":3,"existence":null})")));
+  const auto map = readGeoJson(file, home);
+  ASSERT_EQ(map.histories.size(), 2u);
+  EXPECT_EQ(map.histories[0].existence, 0.95);
+  EXPECT_EQ(map.histories[0].missed, 2u);
+  EXPECT_EQ(map.histories[1].existence,
+            landmarksFrom({map.poles[1]}).poles.front().history.existence);
+  EXPECT_EQ(map.histories[1].seen, 3u);
+}
+
 TEST_F(GeoJson, RefusesWhatItCannotPlace) {
   EXPECT_HAS(refusal(points(point("8, 50"))), "--datum");
   writeGeoJson(folder / "m.geojson", sample());

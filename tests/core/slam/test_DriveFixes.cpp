@@ -28,4 +28,33 @@ TEST(DriveFixes, TheLastingErrorIsAnotherUnknownEveryTenSeconds) {
   for (std::size_t i = 0; i < fixes.size(); ++i) EXPECT_EQ(factors.fixes[i].error, i / 100) << i;
 }
 
+/// Two drives along x at 1 m/s, a scan each second; the antenna is 1 m ahead.
+TEST(DriveFixes, HowTheyFitIsMeasuredDriveByDrive) {
+  AdjustedState state;
+  std::vector<std::size_t> drives;
+  for (int i = 0; i < 20; ++i) {
+    state.poses.push_back({i % 10 * 1.0, 0, 0});
+    drives.push_back(i / 10);
+  }
+  state.antennas = {{1, 0}, {1, 0}};
+  state.fixErrors = {{0, 0}, {0, 2}};
+  FixFactors gnss;
+  const auto add = [&](std::size_t scan, double x, double y, std::size_t error) {
+    gnss.fixes.push_back({scan, 0.5, {x, y}, 0.5, error});
+  };
+  for (std::size_t i = 0; i < 5; ++i) add(i, static_cast<double>(i) + 1.5, 0.3, 0);
+  add(5, 6.5, 1.49, 0);
+  add(6, 7.5, 1.51, 0);  // beyond three sigmas
+  add(7, 108.5, 0, 0);
+  for (std::size_t i = 10; i < 13; ++i) add(i, static_cast<double>(i) - 8.5, 2, 1);
+  const std::vector<FixFit> fits = fixFits(gnss, state, drives);
+  ASSERT_EQ(fits.size(), 2u);
+  EXPECT_EQ(fits[0].given, 8u);
+  EXPECT_EQ(fits[0].fitting, 6u);
+  EXPECT_NEAR(fits[0].distance, 0.3, 1e-9);
+  EXPECT_EQ(fits[1].fitting, 3u) << "with their lasting error they fit";
+  EXPECT_NEAR(fits[1].distance, 2, 1e-9);
+  EXPECT_EQ(fixFits({}, state, drives)[0].given, 0u);
+}
+
 }  // namespace polemcl::test_drive_fixes

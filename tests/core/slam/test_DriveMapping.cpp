@@ -267,8 +267,9 @@ TEST(DriveMapping, RefusesDrivesOfDifferentPlaces) {
 }
 
 /// A drive round a ring in UTM, with poses that are known.
-Drive knownRing(const std::vector<Eigen::Vector2d>& poles, const Pose2D& start) {
-  Drive drive(440, ring(70), poles, 5, start);
+Drive knownRing(const std::vector<Eigen::Vector2d>& poles, const Pose2D& start,
+                double length = 440) {
+  Drive drive(length, ring(70), poles, 5, start);
   for (std::size_t i = 0; i < drive.scans.size(); ++i) {
     drive.scans[i].pose_map_robot = drive.truth[i];
     if (i > 0)
@@ -310,6 +311,17 @@ TEST(DriveMapping, AddsADriveToPosesThatAreKnown) {
   }
 }
 
+TEST(DriveMapping, LoopsOfKnownDrivesAreNotNew) {
+  const auto poles = ringPoles(70, 71);
+  const Drive before = knownRing(poles, {}, 560);
+  const MappedDrives mapped = map({before, Drive(200, ring(70), poles, 6)}, before.scans.size());
+  std::size_t closed = 0;  // by the added drive
+  for (const ClosedLoop& loop : mapped.loops) closed += loop.second >= before.scans.size() ? 1 : 0;
+  EXPECT_GT(closed, 0u);
+  EXPECT_LT(closed, mapped.loops.size()) << "1.27 times round, the ring closes loops of its own";
+  EXPECT_EQ(mapped.newLoops(), closed);
+}
+
 /// Drives that pass no place again: satellites say where they are, and keep them from bending.
 TEST(DriveMapping, PositionsFromSatellitesPlaceADrive) {
   double shape = 0, nees = 0;
@@ -322,7 +334,12 @@ TEST(DriveMapping, PositionsFromSatellitesPlaceADrive) {
           compose(start, {way, (dice.uniform() < 0.5 ? -1 : 1) * dice.uniform(4, 10), 0})));
     const Drive drive(800, straight, poles, seed, start);
     const MappedDrives found = map({drive}, 0, fixesOf(drive, {0.5, -0.3}, 0, dice));
-    EXPECT_EQ(found.fixes, drive.truth.size() - 1);
+    ASSERT_EQ(found.fixes.size(), 1u);
+    EXPECT_EQ(found.fixes[0].given, drive.truth.size() - 1);
+    // Each tenth is 40 m off, and one of a hundred is beyond three sigmas.
+    EXPECT_NEAR(static_cast<double>(found.fixes[0].fitting),
+                0.9 * 0.989 * static_cast<double>(found.fixes[0].given), 30);
+    EXPECT_LT(found.fixes[0].distance, 6);
     shape += drive.worst(found) / 4;
     for (std::size_t i = 0; i < drive.truth.size(); ++i) {
       const Pose2D &right = drive.truth[i], &pose = found.poses[i].mean;

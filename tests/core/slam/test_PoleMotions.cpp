@@ -94,6 +94,60 @@ TEST_F(PoleMotionsTest, CoastsOverSeveralGapsOfTheOdometry) {
   EXPECT_EQ(fillMotions(scans).coasted, 30u);
 }
 
+/// A wheel slips, an encoder starts anew, a turn is told twice: the poles tell the way there.
+TEST_F(PoleMotionsTest, TheyTellWhereTheOdometryIsWrong) {
+  scans.erase(scans.begin(), scans.begin() + 20);  // few poles stand there
+  truth.erase(truth.begin(), truth.begin() + 20);
+  const std::vector<PoleScan> right = scans;
+  for (const Pose2D& wrong : {Pose2D{1.6, 0, 0}, Pose2D{-1.5, 0, 0}, Pose2D{-40, 12, 1},
+                              Pose2D{0, 0, 0.3}, Pose2D{0.6, 0, 0}})
+    for (const std::size_t at : {1, 2, 20}) {
+      SCOPED_TRACE(testing::Message() << wrong.x << ' ' << wrong.yaw << " at " << at);
+      scans = right;
+      scans[at].motion->mean = compose(scans[at].motion->mean, wrong);
+      const FilledMotions filled = fillMotions(scans);
+      EXPECT_EQ(filled.contradicted, 1u);
+      EXPECT_DOUBLE_EQ(filled.firstContradicted, scans[at].time);
+      EXPECT_EQ(filled.byPoles + filled.coasted, 0u);
+      EXPECT_FALSE(filled.all);
+      EXPECT_LT(worst(at, at + 1), 0.25);
+      for (std::size_t i = 1; i < scans.size(); ++i)
+        EXPECT_TRUE(i == at || scans[i].motion->mean.x == right[i].motion->mean.x) << i;
+    }
+}
+
+/// Wheels that stand still on ice: each motion is wrong.
+TEST_F(PoleMotionsTest, TheyTellTheWayOfASlide) {
+  for (std::size_t i = 30; i < 50; ++i) scans[i].motion->mean = {};
+  EXPECT_GE(fillMotions(scans).contradicted, 19u) << "one scan has few poles in common";
+  Pose2D way;
+  for (std::size_t i = 30; i < 50; ++i) way = compose(way, scans[i].motion->mean);
+  const Pose2D right = relative(truth[29], truth[49]);
+  EXPECT_LT(std::hypot(way.x - right.x, way.y - right.y), 1.5) << "of 20 m";
+}
+
+/// Errors that an odometry has, and what few poles contradict, are not theirs to judge.
+TEST_F(PoleMotionsTest, APoorOdometryStays) {
+  const std::vector<PoleScan> right = scans;
+  const auto expectKept = [&] {
+    const std::vector<PoleScan> told = scans;
+    EXPECT_EQ(fillMotions(scans).contradicted, 0u);
+    for (std::size_t i = 1; i < scans.size(); ++i)
+      EXPECT_EQ(scans[i].motion->mean.x, told[i].motion->mean.x) << i;
+  };
+  expectKept();
+  for (PoleScan& scan : scans)
+    if (scan.motion) {
+      scan.motion->mean.x *= 1.2;
+      scan.motion->mean.yaw += 0.03;
+    }
+  expectKept();
+  scans = right;
+  scans[40].motion->mean.x += 1.5;
+  scans[39].poles_robot.resize(3);
+  expectKept();
+}
+
 TEST_F(PoleMotionsTest, RefusesWhereNothingTellsTheWay) {
   forgetMotions(1, scans.size());
   blind(40, 65);

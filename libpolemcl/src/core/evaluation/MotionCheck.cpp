@@ -2,6 +2,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace polemcl {
 namespace {
@@ -13,6 +16,53 @@ constexpr std::size_t s_every = 4;        // scans
 constexpr double s_poseSigma = 0.02;      // m, as [map] pose_sigma_m
 constexpr double s_headingSigma = 0.002;  // rad, as [map] heading_sigma_deg
 constexpr double s_beyondChance = 16.27;  // 99.9 % of chi-squared with 3 degrees of freedom
+// Of a step in the poses: more than poses with bad timing err by over four scans.
+constexpr double s_stepMetres = 0.3, s_stepTurn = 0.03;  // m, rad
+// Greatest difference of a step by other scans, m and share: poles were deskewed by the poses.
+constexpr double s_sameStep = 0.15, s_sameShare = 0.25;
+
+Eigen::Vector3d errorOf(const ScanRegistration& poles, const Pose2D& truth) {
+  return {poles.motion.x - truth.x, poles.motion.y - truth.y,
+          wrapAngle(poles.motion.yaw - truth.yaw)};
+}
+
+bool isBeyondChance(const ScanRegistration& poles, const Eigen::Vector3d& error) {
+  Eigen::Matrix3d covariance = poles.covariance;
+  covariance.diagonal() += 2 * Eigen::Vector3d(s_poseSigma * s_poseSigma, s_poseSigma * s_poseSigma,
+                                               s_headingSigma * s_headingSigma);
+  return error.dot(covariance.inverse() * error) > s_beyondChance;
+}
+
+std::string decimals(double value, int count) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(count) << value;
+  return text.str();
+}
+
+/// Two scans, by their poles and by their poses.
+struct Stretch {
+  Stretch(const SessionScan& before, const SessionScan& after)
+      : truth(relative(before.pose_map_robot, after.pose_map_robot)),
+        poles(motionOfPoles(before.poles_robot, after.poles_robot, truth)) {}
+  bool isStep() const { return contradictsClearly(poles, truth); }
+  /// Where the poles have the second scan, as seen from where the poses have it.
+  Pose2D step() const { return relative(truth, poles.motion); }
+  Pose2D truth;
+  ScanRegistration poles;
+};
+
+/// Whether the stretches that begin a scan earlier, and that end a scan later, have the same step.
+bool isConfirmed(const std::vector<SessionScan>& scans, std::size_t first, const Stretch& found) {
+  const auto same = [&](std::size_t before, std::size_t after) {
+    const Stretch other(scans[before], scans[after]);
+    const Pose2D step = found.step(), off = relative(step, other.step());
+    return other.isStep() &&
+           std::hypot(off.x, off.y) < s_sameStep + s_sameShare * std::hypot(step.x, step.y);
+  };
+  const std::size_t last = first + s_every;
+  return (first == 0 || same(first - 1, last)) &&
+         (last + 1 == scans.size() || same(first, last + 1));
+}
 
 }  // namespace
 
@@ -27,15 +77,24 @@ ScanRegistration motionOfPoles(const std::vector<PoleDetection>& before,
   return far.pairs > s_leastPairs && far.score > s_clearly * near.score ? far : near;
 }
 
-void MotionCheck::add(const ScanRegistration& poles, const Pose2D& truth) {
+bool contradictsClearly(const ScanRegistration& poles, const Pose2D& truth) {
+  const Eigen::Vector3d error = errorOf(poles, truth);
+  return poles.pairs > s_leastPairs &&
+         (error.head<2>().norm() > s_stepMetres || std::abs(error.z()) > s_stepTurn) &&
+         isBeyondChance(poles, error);
+}
+
+void MotionCheck::add(const ScanRegistration& poles, const Pose2D& truth, double time,
+                      bool isConfirmed) {
   if (poles.pairs < s_leastPairs) return;
   ++m_told;
-  const Eigen::Vector3d error(poles.motion.x - truth.x, poles.motion.y - truth.y,
-                              wrapAngle(poles.motion.yaw - truth.yaw));
-  Eigen::Matrix3d covariance = poles.covariance;
-  covariance.diagonal() += 2 * Eigen::Vector3d(s_poseSigma * s_poseSigma, s_poseSigma * s_poseSigma,
-                                               s_headingSigma * s_headingSigma);
-  if (error.dot(covariance.inverse() * error) > s_beyondChance) ++m_contradicting;
+  const Eigen::Vector3d error = errorOf(poles, truth);
+  if (isBeyondChance(poles, error)) ++m_contradicting;
+  if (!isConfirmed || !contradictsClearly(poles, truth)) return;
+  ++m_steps;
+  if (error.head<2>().norm() <= m_worstMetres) return;
+  m_worstMetres = error.head<2>().norm();
+  m_worstTime = time;
 }
 
 std::string MotionCheck::verdict() const {
@@ -44,6 +103,10 @@ std::string MotionCheck::verdict() const {
   const auto of = [this](std::size_t count) {
     return " (in " + std::to_string(count) + " of " + std::to_string(m_told) + " stretches)";
   };
+  if (m_steps > 0 && 2 * m_contradicting <= m_told)
+    return "the poles contradict these poses" + of(m_steps) + ", most before " +
+           decimals(m_worstTime, 3) + " s, by " + decimals(m_worstMetres, 2) +
+           " m: the poses have a step there";
   if (!contradicts()) return "the poles agree with these poses" + of(m_told - m_contradicting);
   return "the poles contradict these poses: truth of another drive, wrong time or wrong scan "
          "timing" +
@@ -53,9 +116,9 @@ std::string MotionCheck::verdict() const {
 MotionCheck checkMotion(const std::vector<SessionScan>& scans) {
   MotionCheck check;
   for (std::size_t i = 0; i + s_every < scans.size(); i += s_every) {
-    const SessionScan &before = scans[i], &after = scans[i + s_every];
-    const Pose2D truth = relative(before.pose_map_robot, after.pose_map_robot);
-    check.add(motionOfPoles(before.poles_robot, after.poles_robot, truth), truth);
+    const Stretch stretch(scans[i], scans[i + s_every]);
+    check.add(stretch.poles, stretch.truth, scans[i + s_every].time,
+              !stretch.isStep() || isConfirmed(scans, i, stretch));
   }
   return check;
 }

@@ -20,22 +20,33 @@ ScanRegistration motionOfPoles(const std::vector<PoleDetection>& before,
 class MotionCheck {
  public:
   /// \param poles From motionOfPoles(). \param truth The same motion by the poses.
-  void add(const ScanRegistration& poles, const Pose2D& truth);
+  /// \param time Of the scan after the stretch, s.
+  /// \param isConfirmed Whether other scans tell the same, where the stretch contradicts clearly.
+  void add(const ScanRegistration& poles, const Pose2D& truth, double time,
+           bool isConfirmed = true);
 
   std::size_t told() const { return m_told; }  ///< stretches of which the poles tell
   /// \brief How many of them contradict the poses: beyond chance (0.1 %), if the poses err by 2 cm
   /// and 0.1°.
   std::size_t contradicting() const { return m_contradicting; }
-  /// \brief Most stretches contradict the poses.
-  bool contradicts() const { return 2 * m_contradicting > m_told; }
+  /// \brief How many of these are far beyond chance, see contradictsClearly(), and confirmed.
+  std::size_t steps() const { return m_steps; }
+  /// \brief Most stretches contradict the poses, or one of them clearly does.
+  bool contradicts() const { return 2 * m_contradicting > m_told || m_steps > 0; }
   /// \brief A line for people.
   std::string verdict() const;
 
  private:
-  std::size_t m_told = 0, m_contradicting = 0;
+  std::size_t m_told = 0, m_contradicting = 0, m_steps = 0;
+  double m_worstTime = 0, m_worstMetres = -1;  ///< of the steps, s and m
 };
 
-/// \brief Each fourth scan with the fourth after it.
+/// \brief A stretch contradicts the poses by 0.3 m or 1.7° at least, beyond chance, by four pairs
+/// of poles or more: the poses have a step there.
+bool contradictsClearly(const ScanRegistration& poles, const Pose2D& truth);
+
+/// \brief Each fourth scan with the fourth after it. Where these contradict clearly, the scans
+/// beside them must tell the same, else it was a wrong pairing of poles.
 MotionCheck checkMotion(const std::vector<SessionScan>& scans);
 
 }  // namespace polemcl

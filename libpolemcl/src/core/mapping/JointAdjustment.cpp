@@ -14,8 +14,6 @@
 namespace polemcl {
 namespace {
 
-/// Squared Mahalanobis distance at which a pair has a quarter of its weight.
-constexpr double kQuarterWeight = 9;
 constexpr double kMotionSigma = 0.003;  ///< m: of each motion, beyond what it states
 constexpr double kTurnSigma = 3e-4;     ///< rad: the same
 constexpr double kExact = 1e-3;         ///< m: added to what is known of an anchor's place

@@ -4,7 +4,8 @@
 /// they saw, and scale error and yaw bias of each drive's odometry, solved with Ceres. Private to
 /// the library.
 ///
-/// Detections have the loss of Geman and McClure, so that wrong pairs let go.
+/// Detections and positions from satellites have the loss of Geman and McClure, so that wrong ones
+/// let go.
 
 #include <Eigen/Core>
 #include <memory>
@@ -14,6 +15,10 @@
 #include <polemcl/core/common/Types.h>
 
 namespace polemcl {
+
+/// \brief Squared Mahalanobis distance at which a detection or a position from satellites has a
+/// quarter of its weight.
+constexpr double kQuarterWeight = 9;
 
 /// \brief One scan of a drive.
 struct DrivenScan {

@@ -40,6 +40,13 @@ Pose2D bestMotion(const std::vector<Eigen::Vector2d>& from,
   return {shift.x(), shift.y(), yaw};
 }
 
+/// Where the antenna is between a scan and the next one.
+Eigen::Vector2d placeAt(std::size_t scan, double share, const Eigen::Vector2d& antenna_robot,
+                        const std::vector<Pose2D>& poses) {
+  const Pose2D &a = poses[scan], &b = poses[scan + 1];
+  return centreOf(a) + share * (centreOf(b) - centreOf(a)) + rotationOf(a.yaw) * antenna_robot;
+}
+
 /// Indices of the distances that are not far above the median.
 std::vector<std::size_t> fitting(const std::vector<double>& distances) {
   std::vector<double> sorted = distances;
@@ -73,13 +80,30 @@ FixFactors fixFactors(const std::vector<DriveFix>& fixes, const std::vector<std:
   return factors;
 }
 
+std::vector<FixFit> fixFits(const FixFactors& gnss, const AdjustedState& state,
+                            const std::vector<std::size_t>& drives) {
+  std::vector<std::vector<double>> distances(drives.back() + 1);
+  std::vector<FixFit> fits(distances.size());
+  for (const PositionFix& fix : gnss.fixes) {
+    const std::size_t drive = drives[fix.scan];
+    const Eigen::Vector2d off =
+        fix.position - placeAt(fix.scan, fix.share, state.antennas[drive], state.poses);
+    const double squared = (off - state.fixErrors[fix.error]).squaredNorm();
+    fits[drive].fitting += squared <= kQuarterWeight * fix.sigma * fix.sigma ? 1 : 0;
+    distances[drive].push_back(off.norm());
+  }
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    fits[i].given = distances[i].size();
+    if (fits[i].given > 0) fits[i].distance = elementOfRank(distances[i], fits[i].given / 2);
+  }
+  return fits;
+}
+
 std::optional<Pose2D> motionOntoFixes(const std::vector<DriveFix>& fixes,
                                       const std::vector<Pose2D>& poses) {
   std::vector<Eigen::Vector2d> driven, told;
   for (const DriveFix& fix : fixes) {
-    const Pose2D &a = poses[fix.scan], &b = poses[fix.scan + 1];
-    driven.push_back(centreOf(a) + fix.share * (centreOf(b) - centreOf(a)) +
-                     rotationOf(a.yaw) * fix.antenna_robot);
+    driven.push_back(placeAt(fix.scan, fix.share, fix.antenna_robot, poses));
     told.push_back(fix.position);
   }
   if (driven.size() < kFewest || spreadOf(columns(driven)) < kSpread) return std::nullopt;

@@ -26,6 +26,18 @@ struct DriveFix {
 /// \param fixes By scans. \param drives Of each scan.
 FixFactors fixFactors(const std::vector<DriveFix>& fixes, const std::vector<std::size_t>& drives);
 
+/// \brief How the fixes of a drive fit the path that was found.
+struct FixFit {
+  std::size_t given = 0;    ///< fixes
+  std::size_t fitting = 0;  ///< within three sigmas; the others have lost most of their weight
+  double distance = 0;      ///< of the fixes from the antenna on the path, median, m
+};
+
+/// \brief How the fixes fit an adjusted state, drive by drive.
+/// \param gnss They were a part of the adjustment. \param drives Of each scan.
+std::vector<FixFit> fixFits(const FixFactors& gnss, const AdjustedState& state,
+                            const std::vector<std::size_t>& drives);
+
 /// \brief The rigid motion that lays a drive onto its fixes, those left out that are far off; none
 /// if they are too few or too near to each other to tell its heading.
 /// \param fixes Of one drive. \param poses Of all scans.

@@ -265,7 +265,8 @@ MappedDrives DriveMapping::result() const {
   MappedDrives result;
   const std::size_t knownDrives = m_knownCount == 0 ? 0 : m_drives[m_knownCount - 1] + 1;
   result.known = m_knownCount;
-  result.fixes = m_factors.gnss.fixes.size();
+  const std::vector<FixFit> fits = fixFits(m_factors.gnss, m_state, m_drives);
+  result.fixes.assign(fits.begin() + static_cast<std::ptrdiff_t>(knownDrives), fits.end());
   result.odometry.assign(m_state.odometry.begin() + static_cast<std::ptrdiff_t>(knownDrives),
                          m_state.odometry.end());
   result.poses = poses();
@@ -278,6 +279,13 @@ MappedDrives DriveMapping::result() const {
 }
 
 }  // namespace
+
+std::size_t MappedDrives::newLoops() const {
+  const auto count = std::count_if(loops.begin(), loops.end(), [this](const ClosedLoop& loop) {
+    return std::max(loop.first, loop.second) >= known;
+  });
+  return static_cast<std::size_t>(count);
+}
 
 MappedDrives mapDrives(DrivesToMap drives, const AdjustmentTrust& trust) {
   return DriveMapping(std::move(drives), trust).run();

@@ -38,10 +38,14 @@ struct MappedDrives {
   std::vector<PoseWithCovariance> poses;  ///< one a scan; the covariance is against the first
   std::size_t known = 0;                  ///< number of poses at the begin that were known
   std::vector<Eigen::Vector2d> odometry;  ///< scale error and yaw bias (rad/m) of each other drive
-  std::vector<ClosedLoop> loops;
+  std::vector<ClosedLoop> loops;          ///< those between known scans, too
   std::size_t tracks = 0;  ///< poles seen in three scans or more, once for each time passed
-  std::size_t fixes = 0;   ///< positions from satellites that were used; 0: the frame is not theirs
-  double driven = 0;       ///< by the drives whose poses were not known, m
+  /// How the positions from satellites fit, of each other drive. None given: the frame is not
+  /// theirs.
+  std::vector<FixFit> fixes;
+  double driven = 0;  ///< by the drives whose poses were not known, m
+  /// \brief Number of loops that drives whose poses were not known closed.
+  std::size_t newLoops() const;
 };
 
 /// \brief Finds the poses.

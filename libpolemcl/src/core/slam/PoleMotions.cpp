@@ -19,6 +19,12 @@ constexpr int kMinPairsNear = 2, kMinPairs = 3;  // near the motion before; sear
 constexpr double kMinShare = 0.4;                // of the poles of the scan with fewer, paired
 constexpr double kSigma = 0.05, kShare = 0.05, kTurnSigma = 0.01;  // m, of the way, rad
 constexpr double kAcceleration = 3, kTurnAcceleration = 0.5;       // m/s², rad/s², while coasting
+/// A told motion is wrong if this many pairs bear out another one,
+constexpr int kPairsAgainst = 4;
+/// whose score is that many times as great: what a scan sees anew must not decide,
+constexpr double kClearly = 1.5;
+/// and which is farther off than any odometry of a healthy vehicle: m and rad, and share of both.
+constexpr double kSlip = 0.3, kTurnSlip = 0.05, kSlipShare = 0.1;
 
 /// Poles as seen at the time of their scan.
 std::vector<PoleDetection> stillPoles(const PoleScan& scan, const Velocity& velocity) {
@@ -34,17 +40,16 @@ class MotionFiller {
   FilledMotions run() {
     for (std::size_t i = 0; i < m_scans.size(); ++i) {
       if (i > 0) {
-        if (m_scans[i].motion) {
-          learnVelocity(i, velocityOf(m_scans[i].motion->mean, secondsTo(i)));
-          m_coasted = 0;
-        } else {
-          fill(i);
-        }
+        if (m_scans[i].motion)
+          take(i);
+        else
+          ++(fill(i) ? m_filled.byPoles : m_filled.coasted);
         m_poses[i] = compose(m_poses[i - 1], m_scans[i].motion->mean);
       }
       m_poles.push_back(stillPoles(m_scans[i], m_velocity.value_or(Velocity())));
     }
-    m_filled.all = m_filled.byPoles + m_filled.coasted + 1 >= m_scans.size();
+    m_filled.all =
+        m_filled.byPoles + m_filled.coasted + m_filled.contradicted + 1 >= m_scans.size();
     return m_filled;
   }
 
@@ -61,7 +66,49 @@ class MotionFiller {
     m_velocity = velocity;
   }
 
-  void fill(std::size_t i) {
+  enum class Verdict { open, borneOut, contradicted };
+
+  /// What poles of this scan and the one before say of the motion of the odometry. Another one is
+  /// sought near it and near the motion that they told last, not farther off: alike poles would
+  /// fit.
+  Verdict judge(std::size_t i) const {
+    const double seconds = secondsTo(i);
+    const Pose2D& told = m_scans[i].motion->mean;
+    const Velocity velocity = m_seen.value_or(velocityOf(told, seconds));
+    const std::vector<PoleDetection>& before = m_poles[i - 1];
+    const std::vector<PoleDetection> now = stillPoles(m_scans[i], velocity);
+    ScanRegistration found = refineMotion(before, now, told, {});
+    if (!isEnough(found, before, now, kPairsAgainst))
+      found = m_seen ? refineMotion(before, now, motionAfter(velocity, seconds), {})
+                     : searchMotion(before, now, {}, limitsOver(seconds));
+    if (!isEnough(found, before, now, kPairsAgainst)) return Verdict::open;
+    if (!isSlip(told, found.motion)) return Verdict::borneOut;
+    const bool clear = found.score > kClearly * judgeMotion(before, now, told, {}).score;
+    return clear ? Verdict::contradicted : Verdict::open;
+  }
+
+  static bool isSlip(const Pose2D& told, const Pose2D& found) {
+    const Pose2D off = relative(found, told);
+    return std::hypot(off.x, off.y) > kSlip + kSlipShare * std::hypot(found.x, found.y) ||
+           std::abs(off.yaw) > kTurnSlip + kSlipShare * std::abs(found.yaw);
+  }
+
+  /// A motion of the odometry, unless the poles contradict it.
+  void take(std::size_t i) {
+    const Verdict verdict = judge(i);
+    if (verdict == Verdict::contradicted) {
+      if (m_filled.contradicted++ == 0) m_filled.firstContradicted = m_scans[i].time;
+      m_scans[i].motion.reset();
+      fill(i);
+      return;
+    }
+    learnVelocity(i, velocityOf(m_scans[i].motion->mean, secondsTo(i)));
+    if (verdict == Verdict::borneOut) m_seen = m_velocity;
+    m_coasted = 0;
+  }
+
+  /// \return Whether the poles told the motion; else the motion before goes on.
+  bool fill(std::size_t i) {
     const double seconds = secondsTo(i);
     const Velocity velocity = m_velocity.value_or(Velocity());
     const Pose2D guess = motionAfter(velocity, seconds);
@@ -75,13 +122,13 @@ class MotionFiller {
       const double doubt = found->pairs < kMinPairs ? m_coasted + seconds : m_coasted;
       m_scans[i].motion = PoseWithCovariance{motion, covarianceOf(motion, doubt)};
       m_coasted = 0;
-      ++m_filled.byPoles;
-    } else {
-      m_coasted += seconds;
-      if (m_coasted > kLongestCoast) refuse(i);
-      m_scans[i].motion = PoseWithCovariance{guess, covarianceOf(guess, m_coasted)};
-      ++m_filled.coasted;
+      m_seen = m_velocity;
+      return true;
     }
+    m_coasted += seconds;
+    if (m_coasted > kLongestCoast) refuse(i);
+    m_scans[i].motion = PoseWithCovariance{guess, covarianceOf(guess, m_coasted)};
+    return false;
   }
 
   struct FoundPose {
@@ -106,19 +153,25 @@ class MotionFiller {
   std::optional<ScanRegistration> align(const std::vector<PoleDetection>& before,
                                         const std::vector<PoleDetection>& now, const Pose2D& guess,
                                         double seconds) const {
-    const auto enough = [&](const ScanRegistration& found, int pairs) {
-      const auto fewer = static_cast<double>(std::min(before.size(), now.size()));
-      return found.pairs >= pairs && found.score >= kMinShare * fewer;
-    };
-    RegistrationOptions options;
     if (m_velocity) {
-      const ScanRegistration near = refineMotion(before, now, guess, options);
-      if (enough(near, kMinPairsNear)) return near;
+      const ScanRegistration near = refineMotion(before, now, guess, {});
+      if (isEnough(near, before, now, kMinPairsNear)) return near;
     }
+    const ScanRegistration found = searchMotion(before, now, guess, limitsOver(seconds));
+    return isEnough(found, before, now, kMinPairs) ? std::optional(found) : std::nullopt;
+  }
+
+  static bool isEnough(const ScanRegistration& found, const std::vector<PoleDetection>& before,
+                       const std::vector<PoleDetection>& now, int pairs) {
+    const auto fewer = static_cast<double>(std::min(before.size(), now.size()));
+    return found.pairs >= pairs && found.score >= kMinShare * fewer;
+  }
+
+  static RegistrationOptions limitsOver(double seconds) {
+    RegistrationOptions options;
     options.maxMetres = kMaxSpeed * seconds;
     options.maxRadians = kMaxTurnRate * seconds + 0.05;
-    const ScanRegistration found = searchMotion(before, now, guess, options);
-    return enough(found, kMinPairs) ? std::optional(found) : std::nullopt;
+    return options;
   }
 
   static Eigen::Matrix3d covarianceOf(const Pose2D& motion, double coasted) {
@@ -140,6 +193,7 @@ class MotionFiller {
   std::vector<Pose2D> m_poses;                      ///< in the frame of the first
   std::vector<std::vector<PoleDetection>> m_poles;  ///< of each scan, when it was taken
   std::optional<Velocity> m_velocity;               ///< by the last motion that was told
+  std::optional<Velocity> m_seen;                   ///< by the last motion that poles told, too
   double m_coasted = 0;  ///< s, since poles or odometry last told the motion
   FilledMotions m_filled;
 };

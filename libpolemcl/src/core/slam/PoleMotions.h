@@ -1,6 +1,7 @@
 #pragma once
 /// \file PoleMotions.h
-/// \brief Motions that no odometry tells, by the poles that scans both saw. Private to the library.
+/// \brief Motions that no odometry tells, or that it tells wrongly, by the poles that scans both
+/// saw. Private to the library.
 
 #include <vector>
 
@@ -10,9 +11,11 @@ namespace polemcl {
 
 /// \brief What fillMotions() did.
 struct FilledMotions {
-  std::size_t byPoles = 0;  ///< motions by the poles
-  std::size_t coasted = 0;  ///< motions that go on as before, where too few poles told
-  bool all = false;         ///< no motion was known
+  std::size_t byPoles = 0;       ///< missing motions by the poles
+  std::size_t coasted = 0;       ///< missing ones that go on as before, where too few poles told
+  std::size_t contradicted = 0;  ///< motions that the poles contradicted, and that they told anew
+  double firstContradicted = 0;  ///< time of the scan that the first of these leads to, s
+  bool all = false;              ///< no motion is that of an odometry
 };
 
 /// \brief Fills in each motion that is missing after the first scan.
@@ -22,6 +25,10 @@ struct FilledMotions {
 /// contradict it, all motions up to 40 m/s are searched. The covariance is that of a coarse
 /// odometry, 5 cm + 5 % and 0.6°, more where nothing corrects it: the poles themselves are used
 /// again by mapDrives().
+///
+/// A motion of the odometry that the poles clearly contradict is taken as missing: a wheel slipped,
+/// or the odometry started anew. Errors up to 0.3 m + 10 % and 0.05 rad + 10 % stay, and so do
+/// motions that fewer than four common poles contradict.
 /// \throws Error naming the scan where too few poles told the motion over 2 s.
 FilledMotions fillMotions(std::vector<PoleScan>& scans);
 

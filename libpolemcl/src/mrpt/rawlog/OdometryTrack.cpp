@@ -19,10 +19,9 @@ Pose2D goneOn(const Reading& from, const Reading& to, double time) {
 
 void OdometryTrack::add(double time, const Pose2D& pose) {
   Pose2D joined = compose(m_origin, pose);
-  if (isJump(time, joined)) {
+  if (isJump(time, joined) || isRestart(time, pose)) {
     ++m_jumps;
-    const auto last = m_readings.rbegin();
-    joined = m_readings.size() > 1 ? goneOn(*std::next(last), *last, time) : last->second;
+    joined = afterLast(time);
     m_origin = compose(joined, relative(pose, {}));
   }
   m_readings[time] = joined;
@@ -40,6 +39,22 @@ bool OdometryTrack::isTooFast(const Pose2D& step, double seconds) {
          std::abs(step.yaw) > kLeastTurn + kFastestTurn * seconds;
 }
 
+/// After a gap nearly all steps are possible. But one that leads just to the begin of the odometry,
+/// where the vehicle was not on its way to, does not look driven.
+bool OdometryTrack::isRestart(double time, const Pose2D& pose) const {
+  if (m_readings.empty() || time - m_readings.rbegin()->first <= kLongestGap) return false;
+  if (std::hypot(pose.x, pose.y) > kNearStart || std::abs(wrapAngle(pose.yaw)) > kTurnedAtStart)
+    return false;
+  const Pose2D off = relative(afterLast(time), compose(m_origin, pose));
+  return std::hypot(off.x, off.y) > kFarFromStart;
+}
+
+Pose2D OdometryTrack::afterLast(double time) const {
+  const auto last = std::prev(m_readings.end());
+  const auto later = m_readings.upper_bound(last->first - kBaseline);
+  return later == m_readings.begin() ? last->second : goneOn(*std::prev(later), *last, time);
+}
+
 std::optional<Pose2D> OdometryTrack::at(double time) const {
   if (m_readings.empty()) return std::nullopt;
   const auto first = m_readings.begin();
@@ -52,10 +67,7 @@ std::optional<Pose2D> OdometryTrack::at(double time) const {
     const auto later = m_readings.lower_bound(first->first + kBaseline);
     return later == m_readings.end() ? first->second : goneOn(*later, *first, time);
   }
-  if (after == m_readings.end()) {
-    const auto later = m_readings.upper_bound(nearest->first - kBaseline);
-    return later == first ? nearest->second : goneOn(*std::prev(later), *nearest, time);
-  }
+  if (after == m_readings.end()) return afterLast(time);
   const auto before = std::prev(after);
   const double share = (time - before->first) / (after->first - before->first);
   const Pose2D step = relative(before->second, after->second);

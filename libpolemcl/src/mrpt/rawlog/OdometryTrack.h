@@ -12,13 +12,21 @@ namespace polemcl {
 /// \brief Readings may come in any order. Poses are in the odometry frame.
 ///
 /// A step that no vehicle makes is a jump: the node of an encoder was started anew, or a packet is
-/// wrong. Over a jump, the motion before goes on; later readings continue from there.
+/// wrong. Over a jump, the motion before goes on; later readings continue from there. After a gap,
+/// a reading at the begin of the odometry is a jump, too, if the motion before leads elsewhere.
 class OdometryTrack {
  public:
   /// \brief A longer step between two readings is a jump: kNearestJump + kFastest * dt, m and m/s.
   static constexpr double kNearestJump = 1, kFastest = 70;
   /// \brief The same for the heading, rad and rad/s.
   static constexpr double kLeastTurn = 0.5, kFastestTurn = 10;
+
+  /// \brief After a gap, a reading this near to (0, 0, 0) may be the first of a node that was
+  /// started anew, m and rad: its first readings can be lost.
+  static constexpr double kNearStart = 1, kTurnedAtStart = 0.2;
+  /// \brief It is, if the motion before leads farther away from there than this, m: a vehicle may
+  /// come back to where it began.
+  static constexpr double kFarFromStart = 10;
 
   /// \brief For this time before and after the readings, the first and last motion go on, s.
   static constexpr double kReach = 0.5;
@@ -64,6 +72,9 @@ class OdometryTrack {
 
  private:
   bool isJump(double time, const Pose2D& pose) const;
+  bool isRestart(double time, const Pose2D& pose) const;
+  /// \brief Where the motion before the last reading leads, as kReach and kBaseline say.
+  Pose2D afterLast(double time) const;
 
   std::map<double, Pose2D> m_readings;  ///< s; without jumps
   Pose2D m_origin;                      ///< of the readings since the last jump

@@ -1,0 +1,169 @@
+/// \file test_DriveDoubts.cpp
+/// \brief pole-map build without true poses: what it says of an odometry that is wrong.
+
+#include <functional>
+
+#include "cli/MapPlane.h"
+#include "io/data/Trajectory.h"
+#include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
+#include "map/MapApp.h"
+#include "support/ExpectHas.h"
+#include "support/StreetTest.h"
+
+namespace polemcl::test_drive_doubts {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+class DriveDoubts : public StreetTest {
+ protected:
+  Outcome build(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{
+        "build",    "--config",           config(),       "--input",      at("in.rawlog"),
+        "--output", at("street.polemap"), "--trajectory", at("found.tum")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(mapMain, arguments);
+  }
+  void driveWithFixes(std::size_t scans) {
+    writeStreet(folder / "in", scans);
+    import("in");
+    writeFixes([](double x) { return x; });
+  }
+  /// A fix just after each scan. \param along What the receiver says of the x of the truth.
+  void writeFixes(const std::function<double(double)>& along) {
+    std::string fixes = "time,latitude,longitude,sigma\n";
+    const MapPlane plane({48, 9, 0});
+    for (const StampedPose2D& at : io::readPlanarTum(folder / "in.tum")) {
+      const Eigen::Vector2d lonLat = plane.lonLat({100 + along(at.pose.x), 50 + at.pose.y});
+      fixes += io::fixed(at.time + 0.01, 3) + ',' + io::fixed(lonLat.y(), 10) + ',' +
+               io::fixed(lonLat.x(), 10) + ",0.02\n";
+    }
+    writeText(folder / "fixes.csv", fixes);
+  }
+  /// Takes scans out of the rawlog; the odometry tells the way over the gap.
+  void leaveOut(std::size_t begin, std::size_t end) {
+    const auto truth = io::readPlanarTum(folder / "in.tum");
+    const auto keep = [&](const char* name, std::size_t shift, const std::string& over) {
+      const auto lines = io::readLines(folder / "in" / name);
+      std::string kept;
+      for (std::size_t i = 0; i < lines.size(); ++i)
+        if (i + shift < begin || i + shift > end || (i + shift == end && over.empty()))
+          kept += lines[i] + '\n';
+        else if (i + shift == end)
+          kept += over;
+      writeText(folder / "in" / name, kept);
+    };
+    const Pose2D way = relative(truth[begin - 1].pose, truth[end].pose);
+    keep("times.txt", 0, "");
+    keep("poses.txt", 0, "");
+    keep("odometry.txt", 1,
+         io::fixed(way.x, 9) + ' ' + io::fixed(way.y, 9) + ' ' + io::fixed(way.yaw, 9) +
+             " 0.02 0.01 0.003\n");
+    const fs::path scans = folder / "in" / "velodyne";
+    for (std::size_t i = begin; i < truth.size(); ++i)
+      if (i + end - begin < truth.size())
+        fs::rename(scans / scanName(i + end - begin), scans / scanName(i));
+      else
+        fs::remove(scans / scanName(i));
+    import("in");
+  }
+  std::map<std::string, std::string> info() const {
+    return io::readPoleMap(folder / "street.polemap").info;
+  }
+  void expectRightPlaces() const {
+    const auto truth = io::readPlanarTum(folder / "in.tum"),
+               found = io::readPlanarTum(folder / "found.tum");
+    ASSERT_EQ(found.size(), truth.size());
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      EXPECT_NEAR(found[i].pose.x, truth[i].pose.x, 0.1) << i;
+      EXPECT_NEAR(found[i].pose.y, truth[i].pose.y, 0.1) << i;
+    }
+  }
+};
+
+}  // namespace
+
+TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
+  writeStreet(folder / "in", 30);
+  import("in");
+  const auto right = build();
+  ASSERT_EQ(right.code, 0) << right.err;
+  EXPECT_EQ(right.err, "");
+  EXPECT_EQ(info().count("warnings"), 0u);
+  std::string rows;
+  std::size_t row = 0;
+  for (const std::string& line : io::readLines(folder / "in" / "odometry.txt"))
+    rows += (++row == 15 ? "2.7 0 0 0.02 0.01 0.003" : line) + '\n';
+  writeText(folder / "in" / "odometry.txt", rows);
+  import("in");
+  const auto slipped = build();
+  ASSERT_EQ(slipped.code, 0) << slipped.err;
+  EXPECT_HAS(slipped.err,
+             "warning: in.rawlog: the poles contradict 1 motion of its odometry, the "
+             "first at 53.000 s");
+  EXPECT_HAS(info().at("warnings"), "in.rawlog: the poles contradict 1 motion");
+  EXPECT_EQ(slipped.out.find("no odometry leads"), std::string::npos) << slipped.out;
+  expectRightPlaces();
+}
+
+TEST_F(DriveDoubts, PositionsOfAnotherClockAreTold) {
+  driveWithFixes(60);
+  const auto right = build({"--gnss", at("fixes.csv")});
+  ASSERT_EQ(right.code, 0) << right.err;
+  EXPECT_EQ(right.err, "");
+  EXPECT_HAS(right.out, "placed by 59 positions from satellites;");
+  EXPECT_HAS(right.out, "in.rawlog: its 59 positions from satellites lie 0.0");
+  EXPECT_HAS(right.out, "m from its path (median), 0 of them do not fit");
+  EXPECT_EQ(info().at("fixes"), "59");
+  writeFixes([](double x) { return x < 25 ? x : std::min(2 * x - 25, 55.0); });
+  const auto late = build({"--gnss", at("fixes.csv")});
+  ASSERT_EQ(late.code, 0) << late.err;
+  EXPECT_HAS(late.err, "of 59 positions from satellites do not fit its path, they lie ");
+  EXPECT_HAS(late.err, "clock (GPS time is 18 s ahead of UTC)");
+  EXPECT_HAS(info().at("warnings"), "do not fit its path");
+  EXPECT_LT(std::stoi(info().at("fixes")), 45);
+}
+
+TEST_F(DriveDoubts, ADatumNeedsPositionsThatPlaceTheMapThere) {
+  driveWithFixes(60);
+  expectFailure(build({"--datum", "48,9"}), {"--datum 48,9,0: no drive has five positions",
+                                             "--gnss or --truth", "leave out --datum"});
+  EXPECT_FALSE(fs::exists(folder / "street.polemap"));
+  EXPECT_EQ(build({"--datum", "48,9", "--gnss", at("fixes.csv")}).code, 0);
+}
+
+/// Key frames of a slow robot, a metre and 3 s apart.
+TEST_F(DriveDoubts, PositionsBetweenScansThatAreLateButNearAreUsed) {
+  driveWithFixes(60);
+  std::string slow;
+  for (int i = 0; i < 60; ++i) slow += std::to_string(50 + 3 * i) + '\n';
+  writeText(folder / "in" / "times.txt", slow);
+  import("in");
+  writeFixes([](double x) { return x; });
+  const auto near = build({"--gnss", at("fixes.csv")});
+  ASSERT_EQ(near.code, 0) << near.err;
+  EXPECT_HAS(near.out, "placed by 59 positions");
+  EXPECT_EQ(near.out.find("left out"), std::string::npos) << near.out;
+}
+
+/// A gap of 15 m and 3 s, the scans 30 to 43.
+TEST_F(DriveDoubts, PositionsBetweenScansFarApartAreCounted) {
+  driveWithFixes(60);
+  leaveOut(30, 44);
+  const auto gap = build({"--gnss", at("fixes.csv")});
+  ASSERT_EQ(gap.code, 0) << gap.err;
+  EXPECT_HAS(gap.out, "placed by 44 positions");
+  EXPECT_HAS(gap.out,
+             "in.rawlog: left out 15 positions from satellites between scans more than 2 s and 10 "
+             "m apart");
+  const auto rows = io::readLines(folder / "fixes.csv");
+  writeText(folder / "few.csv", rows[0] + '\n' + rows[33] + '\n' + rows[34] + '\n');
+  expectFailure(build({"--gnss", at("few.csv")}),
+                {"few.csv: all 2 of its positions", "more than 2 s and 10 m apart"});
+}
+
+}  // namespace polemcl::test_drive_doubts

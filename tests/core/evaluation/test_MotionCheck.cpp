@@ -1,0 +1,79 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/evaluation/MotionCheck.h"
+#include "support/PoleStreet.h"
+
+namespace polemcl::test_motion_check {
+namespace {
+
+using tests::Dice;
+
+/// 100 m straight on, a scan each 0.1 s and 0.5 m, poles on both sides.
+std::vector<SessionScan> drive(std::uint64_t seed) {
+  Dice dice(seed);
+  std::vector<Eigen::Vector2d> poles;
+  for (double x = -30; x < 130; x += dice.uniform(4, 9))
+    poles.emplace_back(x, (dice.uniform() < 0.5 ? -1 : 1) * dice.uniform(4, 9));
+  std::vector<SessionScan> scans;
+  for (int i = 0; i < 200; ++i) {
+    SessionScan scan;
+    scan.time = 100 + 0.1 * i;
+    scan.pose_map_robot = {0.5 * i, 0, 0};
+    for (const Eigen::Vector2d& pole : poles) {
+      if (std::abs(pole.x() - 0.5 * i) > 25 || dice.uniform() < 0.1) continue;
+      PoleDetection seen;
+      seen.x = pole.x() - 0.5 * i + 0.02 * dice.normal();
+      seen.y = pole.y() + 0.02 * dice.normal();
+      seen.covariance = 4e-4 * Eigen::Matrix2d::Identity();
+      seen.confidence = 1;
+      scan.poles_robot.push_back(seen);
+    }
+    scans.push_back(scan);
+  }
+  return scans;
+}
+
+}  // namespace
+
+TEST(MotionCheck, AgreesWithTruePoses) {
+  const MotionCheck check = checkMotion(drive(1));
+  EXPECT_GE(check.told(), 45u);
+  EXPECT_EQ(check.steps(), 0u);
+  EXPECT_FALSE(check.contradicts());
+  EXPECT_NE(check.verdict().find("the poles agree"), std::string::npos) << check.verdict();
+}
+
+TEST(MotionCheck, TellsAStepAndWhereItIs) {
+  for (const Pose2D& step : {Pose2D{0.5, 0, 0}, Pose2D{0, 1.5, 0}, Pose2D{-4, 3, 0}})
+    for (const std::size_t at : {2, 101, 104, 195}) {
+      SCOPED_TRACE(testing::Message() << step.x << ' ' << step.y << " at " << at);
+      std::vector<SessionScan> scans = drive(2);
+      for (std::size_t i = at; i < scans.size(); ++i) {
+        scans[i].pose_map_robot.x += step.x;
+        scans[i].pose_map_robot.y += step.y;
+      }
+      const MotionCheck check = checkMotion(scans);
+      EXPECT_EQ(check.steps(), 1u);
+      EXPECT_TRUE(check.contradicts());
+      const double end = 100 + 0.4 * std::ceil(static_cast<double>(at) / 4);
+      char time[64], share[64];
+      std::snprintf(time, sizeof time, "most before %.3f s, by ", end);
+      std::snprintf(share, sizeof share, "in 1 of %zu stretches", check.told());
+      for (const char* part : {time, share})
+        EXPECT_NE(check.verdict().find(part), std::string::npos) << check.verdict();
+    }
+}
+
+/// One scan whose poles are paired wrongly is no step.
+TEST(MotionCheck, WhatOtherScansDoNotConfirmIsNoStep) {
+  std::vector<SessionScan> scans = drive(3);
+  for (PoleDetection& seen : scans[100].poles_robot) seen.x += 0.7;
+  const MotionCheck check = checkMotion(scans);
+  EXPECT_GE(check.contradicting(), 1u);
+  EXPECT_EQ(check.steps(), 0u);
+  EXPECT_FALSE(check.contradicts());
+}
+
+}  // namespace polemcl::test_motion_check
