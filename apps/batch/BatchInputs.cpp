@@ -37,6 +37,12 @@ std::string inputObstacle(const BatchSession& session, bool scored) {
   return what.empty() && scored ? truthObstacle(session) : what;
 }
 
+std::string besideBatch(const BatchSpec& spec, const std::string& file) {
+  if (file.empty()) return file;
+  const fs::path beside = fs::absolute(spec.file.parent_path() / file);
+  return fs::is_regular_file(beside) ? beside.string() : file;
+}
+
 AllSettings settingsFor(const BatchSpec& spec, const BatchConfiguration& configuration) {
   const std::string where = "batch " + spec.name + ": [setting " + configuration.name + "] ";
   if (!fs::is_regular_file(configuration.config))

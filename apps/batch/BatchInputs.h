@@ -13,6 +13,9 @@ namespace polemcl::apps {
 /// \param scored Whether its true poles (truthMap) are needed as well.
 std::string inputObstacle(const BatchSession& session, bool scored);
 
+/// \brief A file that settings name: beside the batch if it is there, else as the programs find it.
+std::string besideBatch(const BatchSpec& spec, const std::string& file);
+
 /// \brief The settings of a configuration. \throws Error as loadSettings(), naming batch and
 /// configuration, and when its config is not there.
 AllSettings settingsFor(const BatchSpec& spec, const BatchConfiguration& configuration);

@@ -111,13 +111,6 @@ class Planner {
     return frozen("settings/" + configuration + ".ini", task);
   }
 
-  /// A file that settings name: beside the batch if it is there, else as the programs find it.
-  std::string besideBatch(const std::string& file) const {
-    if (file.empty()) return file;
-    const fs::path beside = fs::absolute(m_spec.file.parent_path() / file);
-    return fs::is_regular_file(beside) ? beside.string() : file;
-  }
-
   /// The same as frozen() for a file that settings name: it is copied into the batch's folder.
   std::string frozenCopy(const std::string& file, BatchTask& task) {
     if (file.empty()) return file;
@@ -171,9 +164,10 @@ class Planner {
 
   void simulate(const BatchSession& session, BatchTask& task) {
     AllSettings settings = loadSettings(session.input, session.set);
-    settings.simulation.detections = frozenCopy(besideBatch(settings.simulation.detections), task);
+    settings.simulation.detections =
+        frozenCopy(besideBatch(m_spec, settings.simulation.detections), task);
     settings.simulation.world.track =
-        frozenCopy(besideBatch(settings.simulation.world.track), task);
+        frozenCopy(besideBatch(m_spec, settings.simulation.world.track), task);
     const std::string file = "settings/simulate." + session.name + ".ini";
     m_plan.files[file] = settingsText(settings);
     Command command = program("pole-simulate");
