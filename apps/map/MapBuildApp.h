@@ -54,7 +54,7 @@ struct MapBuildSummary {
   std::vector<Session> sessions;                 ///< in their order, those of `add` first
   std::optional<InventoryAdjustment> inventory;  ///< when one was given
   std::optional<MappedDrives> mapped;            ///< when odometry stood for poses
-  /// Of each input, positions from satellites that were left out: their scans are too far apart.
+  /// Number of positions from satellites left out of each input, as scans are too far apart.
   std::vector<std::size_t> fixesApart;
   std::vector<MotionCheck> motions;       ///< of each input, when its poses are a truth
   std::vector<std::string> timingDoubts;  ///< sentences on inputs whose timing looks wrong

@@ -212,7 +212,7 @@ TEST(BatchSpec, AMapAloneNeedsTruePolesOfItsLastSession) {
             2u);
 }
 
-// Of a split into even and odd scans, a drive would be localized in its own data.
+// `every` and `offset` split nothing there: a drive would be localized in its own data.
 TEST(BatchSpec, KeysOfAnImportNeedOne) {
   const std::string head =
       "[batch]\nsettings = one\n" + configuration + "[sessions]\nnames = a b\ninput = x\n";

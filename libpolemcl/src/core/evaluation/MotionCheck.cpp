@@ -16,9 +16,10 @@ constexpr std::size_t s_every = 4;        // scans
 constexpr double s_poseSigma = 0.02;      // m, as [map] pose_sigma_m
 constexpr double s_headingSigma = 0.002;  // rad, as [map] heading_sigma_deg
 constexpr double s_beyondChance = 16.27;  // 99.9 % of chi-squared with 3 degrees of freedom
-// Of a step in the poses: more than poses with bad timing err by over four scans.
+// Least size of a step in the poses. Bad timing alone makes smaller errors over four scans.
 constexpr double s_stepMetres = 0.3, s_stepTurn = 0.03;  // m, rad
-// Greatest difference of a step by other scans, m and share: poles were deskewed by the poses.
+// Other scans confirm a step if theirs differs by less, m and share. It differs a little, as poles
+// were deskewed by the poses.
 constexpr double s_sameStep = 0.15, s_sameShare = 0.25;
 
 Eigen::Vector3d errorOf(const ScanRegistration& poles, const Pose2D& truth) {

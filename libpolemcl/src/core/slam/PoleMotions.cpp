@@ -19,11 +19,12 @@ constexpr int kMinPairsNear = 2, kMinPairs = 3;  // near the motion before; sear
 constexpr double kMinShare = 0.4;                // of the poles of the scan with fewer, paired
 constexpr double kSigma = 0.05, kShare = 0.05, kTurnSigma = 0.01;  // m, of the way, rad
 constexpr double kAcceleration = 3, kTurnAcceleration = 0.5;       // m/s², rad/s², while coasting
-/// A told motion is wrong if this many pairs bear out another one,
+/// A motion of the odometry is wrong if another motion meets three conditions. It has at least this
+/// number of pairs:
 constexpr int kPairsAgainst = 4;
-/// whose score is that many times as great: what a scan sees anew must not decide,
+/// Its score is greater by this factor, so that poles seen for the first time do not decide:
 constexpr double kClearly = 1.5;
-/// and which is farther off than any odometry of a healthy vehicle: m and rad, and share of both.
+/// It differs by more than the odometry of a healthy vehicle errs: m and rad, and share of both:
 constexpr double kSlip = 0.3, kTurnSlip = 0.05, kSlipShare = 0.1;
 
 /// Poles as seen at the time of their scan.
