@@ -6,7 +6,7 @@
 #include "cli/Messages.h"
 #include "cli/Outputs.h"
 #include "cli/Progress.h"
-#include "map/MapBuildApp.h"
+#include "map/MapBuildReport.h"
 #include "map/MapConvertApp.h"
 #include "map/MapDiffApp.h"
 #include "map/MapImportApp.h"

@@ -1,20 +1,16 @@
 #include "map/MapBuildApp.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
-#include <sstream>
 
-#include "cli/Version.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/ErrorPlace.h"
-#include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
-#include "map/DriveDoubts.h"
 #include "map/DriveFixFiles.h"
 #include "map/DrivePoses.h"
+#include "map/MapBuildReport.h"
 #include "map/TimingDoubt.h"
 #include "report/picture/MapPicture.h"
 
@@ -23,8 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kTwin = 1;          ///< m; real poles seldom stand nearer to each other
-constexpr double kManyTwins = 0.25;  ///< share of the poles
+constexpr double kTwin = 1;  ///< m; real poles seldom stand nearer to each other
 
 /// The map that is added to, or the inventory.
 struct BaseMap {
@@ -151,149 +146,6 @@ std::size_t countTwins(const std::vector<MapPole>& poles) {
   return twins;
 }
 
-double scanSpacing(const MapBuildSummary& summary) {
-  const std::size_t steps = summary.visited - std::min(summary.visited, summary.sessions.size());
-  return steps > 0 ? summary.map.pathLength / static_cast<double>(steps) : 0;
-}
-
-const char* counted(PoleCounting counting) {
-  switch (counting) {
-    case PoleCounting::members:
-      return " detections";
-    case PoleCounting::confidences:
-      return " sections of one run, weighed by confidence";
-    case PoleCounting::run:
-      return " sections of one run";
-  }
-  return "";
-}
-
-std::string noPoles(const MapBuildSummary& summary, const PoleMapOptions& options) {
-  const auto& map = summary.map;
-  return "no pole found: " + std::to_string(summary.scans) + " scans " +
-         io::fixed(scanSpacing(summary), 2) +
-         " m apart on average; sections of section_length_m = " +
-         io::significant(options.sectionLength, 6) + ", " + std::to_string(map.occupiedSections) +
-         " of " + std::to_string(map.sections) + " with a scan; " + std::to_string(map.detections) +
-         " detections in " + std::to_string(map.clusters) + " places, the best with " +
-         io::significant(map.bestCount, 4) + counted(options.counting) +
-         ", min_count = " + io::significant(options.minCount, 4) +
-         " are needed (less where scans are far apart)" +
-         (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]") +
-         // Poles that are found again and again fall into few places.
-         (map.detections > 0 && 2 * map.clusters > map.detections
-              ? "; most places hold one detection: check that the true poses fit the scans (frame, "
-                "z up, times)"
-              : "");
-}
-
-/// `f_map.NAME` of each session; of equal names the second is `f_map.NAME.2`.
-void addShares(const MapBuildSummary& summary, std::map<std::string, std::string>& info) {
-  for (const MapBuildSummary::Session& session : summary.sessions) {
-    const std::string key = "f_map." + std::filesystem::path(session.name).stem().string();
-    std::string unique = key;
-    for (int n = 2; info.count(unique) > 0; ++n) unique = key + '.' + std::to_string(n);
-    info[unique] = io::fixed(session.share, 6);
-  }
-}
-
-/// A count in the info of a map; 0 where it has no such key.
-double countIn(const std::map<std::string, std::string>& info, const std::string& key) {
-  const auto fact = info.find(key);
-  return fact == info.end() ? 0 : io::parseNumber(fact->second).value_or(0);
-}
-
-/// Positions from satellites of all drives; their distance is not summed up.
-FixFit allFixes(const MappedDrives& mapped) {
-  FixFit sum;
-  for (const FixFit& fit : mapped.fixes) {
-    sum.given += fit.given;
-    sum.fitting += fit.fitting;
-  }
-  return sum;
-}
-
-std::map<std::string, std::string> facts(const AllSettings& settings,
-                                         const MapBuildSummary& summary, const MapBuildJob& job,
-                                         const std::optional<io::Datum>& datum,
-                                         const std::map<std::string, std::string>& before) {
-  std::string names;
-  for (const MapBuildSummary::Session& session : summary.sessions)
-    names += (names.empty() ? "" : " ") + session.name;
-  std::map<std::string, std::string> info{
-      {"program", std::string("pole-map ") + version()},
-      {"build", buildIdentity()},
-      {"inputs", names},
-      {"scans", std::to_string(summary.scans)},
-      {"path_length_m", io::fixed(summary.map.pathLength, 3)},
-      {"sections", std::to_string(summary.map.sections)},
-      {"occupied_sections", std::to_string(summary.map.occupiedSections)},
-      {"detections", std::to_string(summary.map.detections)},
-      {"config", settingsText(settings)}};
-  addShares(summary, info);
-  if (const auto earlier = before.find("warnings"); job.add && earlier != before.end())
-    info.insert(*earlier);
-  if (datum) info[io::kDatumKey] = io::datumText(*datum);
-  keepWarnings(buildWarnings(summary, job), info);
-  if (summary.mapped) {
-    info["poses"] = "odometry";
-    info["loops"] = std::to_string(summary.mapped->newLoops());
-    if (const std::size_t used = allFixes(*summary.mapped).fitting; used > 0)
-      info["fixes"] = std::to_string(used);
-  }
-  if (summary.inventory) info["pose_sigma_m"] = io::fixed(summary.inventory->drives.sigma, 4);
-  if (!job.add) return info;
-  if (before.count("poses") > 0) info["poses"] = before.at("poses");
-  for (const char* key : {"loops", "fixes"}) {
-    const double sum = countIn(info, key) + countIn(before, key);
-    if (sum > 0) info[key] = io::fixed(sum, 0);
-  }
-  return info;
-}
-
-/// Standard deviation of a place along an axis, m.
-double sigmaOf(const PoseWithCovariance& pose) {
-  return std::sqrt(pose.covariance.topLeftCorner<2, 2>().trace() / 2);
-}
-
-std::string foundText(const MapBuildSummary& summary, const MapBuildJob& job) {
-  const MappedDrives& mapped = *summary.mapped;
-  const FixFit fixes = allFixes(mapped);
-  std::ostringstream out;
-  const bool alone = std::all_of(summary.filled.begin(), summary.filled.end(),
-                                 [](const FilledMotions& filled) { return filled.all; });
-  out << (alone ? "poses by " : "poses by odometry and ") << mapped.tracks
-      << " poles followed over " << io::fixed(mapped.driven, 1) << " m; " << mapped.newLoops()
-      << " places passed again; the last pose is certain to "
-      << io::fixed(sigmaOf(mapped.poses.back()), 2)
-      << (fixes.given + mapped.known > 0 ? " m\n" : " m against the first\n");
-  if (fixes.given > 0)
-    out << "placed by " << fixes.fitting
-        << " positions from satellites; the first pose is certain to "
-        << io::fixed(sigmaOf(mapped.poses.at(mapped.known)), 2) << " m\n";
-  for (std::size_t i = 0; i < mapped.odometry.size(); ++i) {
-    const FilledMotions& filled = summary.filled[i];
-    const std::size_t missing = filled.byPoles + filled.coasted;
-    const std::string drive = job.inputs[i].filename().string();
-    if (mapped.fixes[i].given > 0)
-      out << drive << ": its " << mapped.fixes[i].given << " positions from satellites lie "
-          << io::fixed(mapped.fixes[i].distance, 2) << " m from its path (median), "
-          << mapped.fixes[i].given - mapped.fixes[i].fitting << " of them do not fit\n";
-    if (i < summary.fixesApart.size() && summary.fixesApart[i] > 0)
-      out << drive << ": left out " << summary.fixesApart[i]
-          << " positions from satellites between scans more than 2 s and 10 m apart\n";
-    if (missing > 0)
-      out << drive << ": no odometry leads to " << missing << " scans; the poles told the way to "
-          << filled.byPoles
-          << (filled.coasted > 0 ? ", the others go on as before: look there\n" : "\n");
-    if (filled.all) continue;
-    out << drive << ": its odometry is " << io::fixed(-100 * mapped.odometry[i].x(), 2)
-        << " % long, and turns " << io::fixed(-mapped.odometry[i].y() * 180 / M_PI, 4)
-        << " deg/m\n";
-  }
-  return out.str();
-}
-
 /// The datum becomes that of the fixes, where these place the map. Fixes that merely lie in a
 /// rawlog may be of no use; a table of them must not.
 MappedDrives findPosesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
@@ -307,7 +159,8 @@ MappedDrives findPosesOf(std::vector<MappingSession>& drives, const MapBuildJob&
   ReadFixes read = usable ? readDriveFixes(job, drives, before.scans(), plane) : ReadFixes();
   fixesApart = std::move(read.apart);
   MappedDrives mapped = findPoses(drives, job.inputs, before, std::move(read.fixes), settings);
-  const bool placed = allFixes(mapped).given > 0;
+  const bool placed = std::any_of(mapped.fixes.begin(), mapped.fixes.end(),
+                                  [](const FixFit& fit) { return fit.given > 0; });
   if (placed) datum = plane;
   if (!job.gnss.empty() && !placed)
     throw Error(job.gnss.front().string() +
@@ -380,7 +233,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
   addDrives(job, std::move(drives), sessions, summary);
   countSessions(sessions.added(), summary);
   summary.map = sessions.build();
-  if (summary.map.poles.empty()) throw Error(noPoles(summary, settings.map));
+  if (summary.map.poles.empty()) throw Error(noPolesText(summary, settings.map));
   summary.twins = countTwins(summary.map.poles);
 
   LandmarkMap landmarks = sessions.withHistories(summary.map.poles);
@@ -390,7 +243,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
     landmarks.poles.insert(landmarks.poles.end(), kept.begin(), kept.end());
   }
   const io::PoleMapData map =
-      io::mapData(landmarks, facts(settings, summary, job, datum, base.map.info));
+      io::mapData(landmarks, mapFacts(settings, summary, job, datum, base.map.info));
   io::AtomicFiles files;
   if (summary.mapped) writeTrajectories(job, *summary.mapped, paths);
   const report::MapView view = viewOf(job, summary, map, pathOf(sessions.added()));
@@ -399,58 +252,6 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
   io::writePoleMap(job.output, map, job.keepScans || job.add ? &sessions.added() : nullptr);
   files.commit();
   return summary;
-}
-
-std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job) {
-  std::vector<std::string> warnings = summary.timingDoubts;
-  const auto doubt = [&](std::size_t drive, const std::string& text) {
-    if (!text.empty()) warnings.push_back(job.inputs[drive].filename().string() + ": " + text);
-  };
-  for (std::size_t i = 0; i < summary.filled.size(); ++i)
-    doubt(i, odometryDoubt(summary.filled[i]));
-  for (std::size_t i = 0; summary.mapped && i < summary.mapped->fixes.size(); ++i)
-    doubt(i, fixesDoubt(summary.mapped->fixes[i]));
-  for (std::size_t i = 0; i < summary.motions.size(); ++i)
-    if (summary.motions[i].contradicts())
-      warnings.push_back(job.inputs[i].filename().string() + ": " + summary.motions[i].verdict() +
-                         "; check " + job.poses[i].filename().string());
-  const std::size_t poles = summary.map.poles.size();
-  if (static_cast<double>(summary.twins) > kManyTwins * static_cast<double>(poles))
-    warnings.push_back(
-        std::to_string(summary.twins) + " of " + std::to_string(poles) +
-        " poles have a twin nearer than 1 m (the scans are " + io::fixed(scanSpacing(summary), 2) +
-        " m apart); mostly the poses of some scans are wrong" +
-        (job.kind == PoseKind::truth
-             ? ", check them with pole-eval motion"
-             : ", or that of the LiDAR on the vehicle (--sensor-pose of pole-import)"));
-  return warnings;
-}
-
-std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job) {
-  std::ostringstream out;
-  out << job.output.string() << ": " << summary.map.poles.size() << " poles from " << summary.scans
-      << " scans over " << io::fixed(summary.map.pathLength, 1) << " m\n"
-      << "sections: " << summary.map.occupiedSections << " of " << summary.map.sections
-      << " with a scan; detections " << summary.map.detections << " in " << summary.map.clusters
-      << " places\n";
-  if (summary.sessions.size() > 1)
-    for (const MapBuildSummary::Session& session : summary.sessions)
-      out << session.name << ": " << session.used << " of " << session.scans
-          << " scans used, f_map " << io::fixed(session.share, 4) << '\n';
-  for (std::size_t i = 0; i < summary.motions.size(); ++i)
-    if (!summary.motions[i].contradicts())  // else it is a warning
-      out << job.inputs[i].filename().string() << ": " << summary.motions[i].verdict() << '\n';
-  if (summary.inventory) {
-    const AdjustedDrives& drives = summary.inventory->drives;
-    out << "inventory: " << drives.anchors.size() << " of its poles are among the " << drives.poles
-        << " poles seen, " << io::fixed(drives.anchorDistance, 2)
-        << " m from them (rms); the poses "
-        << "are certain to " << io::fixed(drives.sigma, 3)
-        << " m; poles of it out of sight, kept: " << summary.inventory->kept << '\n';
-  }
-  if (summary.mapped) out << foundText(summary, job);
-  out << summary.skipped;
-  return out.str();
 }
 
 }  // namespace polemcl::apps

@@ -73,11 +73,4 @@ struct MapBuildSummary {
 MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
                          const ScanProgress& progress = {});
 
-/// \brief Signs that poses or timing are wrong: poles that contradict them, many twins. Also in the
-/// map's info, key `warnings`.
-std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job);
-
-/// \brief What the program prints.
-std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job);
-
 }  // namespace polemcl::apps

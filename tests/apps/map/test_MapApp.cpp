@@ -8,7 +8,7 @@
 #include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"
-#include "map/MapBuildApp.h"
+#include "map/MapBuildReport.h"
 #include "mrpt/rawlog/GnssFixes.h"
 #include "support/ExpectHas.h"
 #include "support/IoFiles.h"
