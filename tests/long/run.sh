@@ -80,7 +80,7 @@ title = A million scans
 runs = $((runs / 10))
 settings = kept
 [sessions]
-names = first s0 s1 s2 s3 s4 s5 s6 s7 s8 s9
+names = mapped s0 s1 s2 s3 s4 s5 s6 s7 s8 s9
 source = simulated
 input = $top/config/hdl32e.ini
 set = simulation.detections=$top/share/models/hdl32e.json $wheels world.length_m=510
@@ -92,7 +92,7 @@ END
   cat <<END
 [setting kept]
 config = $top/config/hdl32e.ini
-map_sessions = first
+map_sessions = mapped
 sessions = later
 END
 }

@@ -21,6 +21,12 @@ constexpr int kSurePairs = 5;  // pairs that decide at once; fewer need two scan
 constexpr double kMinShare =
     0.4;                         // least share of the poles of the scan with fewer that are paired
 constexpr double kMargin = 1.5;  // least lead of the poles' motion over the odometry's, in pairs
+constexpr double kNear = 0.4;    // of alike poles, m
+/// Least share of the pairs of a motion: poles that fit themselves after the difference to the
+/// odometry. Then both motions fit, and the poles do not contradict.
+constexpr double kAlike = 0.5;
+constexpr double kStandingShare =
+    0.75;  // least share of the poles that stand, where the vehicle does
 constexpr double kLeastChance = 1e-3;   // that none of the poles is seen again; less contradicts
 constexpr double kForget = 0.98;        // weight of earlier scans in the share seen again
 constexpr double kMostSeenAgain = 0.8;  // of that share: one bus hides several poles
@@ -76,6 +82,29 @@ Eigen::Matrix3d doubt(const Pose2D& from, const Pose2D& to, double share) {
 /// How far `value` lies outside the tolerance around 0.
 double outside(double value, double tolerance) {
   return value > tolerance ? value - tolerance : value < -tolerance ? value + tolerance : 0;
+}
+
+/// Number of poles that come to lie near others by this motion, whatever their covariances.
+int countNear(const std::vector<PoleDetection>& before, const std::vector<PoleDetection>& after,
+              const Pose2D& motion) {
+  RegistrationOptions near;
+  near.sigma = near.reach = kNear;
+  return judgeMotion(before, after, motion, near).pairs;
+}
+
+/// Number of poles of two scans that lie where others would after this motion: in even rows.
+/// \param found The motion from the first scan to the second.
+int countAlike(const std::vector<PoleDetection>& before, const std::vector<PoleDetection>& after,
+               const Pose2D& found, const Pose2D& motion) {
+  if (std::hypot(motion.x, motion.y) < 2 * kNear) return 0;  // each would find itself
+  std::vector<PoleDetection> all = before;
+  for (PoleDetection pole : after) {
+    const Pose2D place = compose(found, {pole.x, pole.y, 0});
+    pole.x = place.x;
+    pole.y = place.y;
+    all.push_back(pole);
+  }
+  return countNear(all, all, motion);
 }
 
 /// Distance of another motion from what the odometry allows, in standard deviations.
@@ -183,26 +212,65 @@ bool OdometryMonitor::suffices(const ScanRegistration& alignment, const Referenc
          isCertain(alignment.covariance);
 }
 
+/// Distance of the poles' motion from what the odometry allows, in standard deviations.
+double OdometryMonitor::beyondOdometry(const Reference& reference, const Reference& now,
+                                       const ScanRegistration& found) {
+  const Pose2D odometry = relative(reference.odometry, now.odometry);
+  const Eigen::Matrix3d spent = now.spent - reference.spent;
+  // Errors of the headings on the way move the end.
+  const double carried = spent(2, 2) * (odometry.x * odometry.x + odometry.y * odometry.y) / 3;
+  const Eigen::Vector3d least(kLeastSigma * kLeastSigma + carried,
+                              kLeastSigma * kLeastSigma + carried, kLeastTurn * kLeastTurn);
+  const Eigen::Matrix3d leastCovariance = least.asDiagonal();
+  return beyondTolerance(odometry, found.motion, found.covariance + spent + leastCovariance);
+}
+
+/// The odometry with the pairs that support it, corrected by them within its tolerance.
+ScanRegistration OdometryMonitor::allowed(const Reference& reference, const Reference& now) {
+  const Pose2D odometry = relative(reference.odometry, now.odometry);
+  const ScanRegistration corrected =
+      refineMotion(reference.poles, now.poles, odometry, RegistrationOptions());
+  if (corrected.pairs >= 2 && beyondOdometry(reference, now, corrected) <= kSigmas)
+    return corrected;
+  return judgeMotion(reference.poles, now.poles, odometry, RegistrationOptions());
+}
+
 OdometryMonitor::Finding OdometryMonitor::compare(const Reference& reference, const Reference& now,
                                                   bool search) const {
   Finding finding;
   finding.alignment = align(reference, now, search);
   const ScanRegistration& found = finding.alignment;
   if (!suffices(found, reference, now)) return finding;
-  const Pose2D odometry = relative(reference.odometry, now.odometry);
-  Eigen::Matrix3d covariance = found.covariance + now.spent - reference.spent;
-  // Errors of the headings on the way move the end.
-  const double carried =
-      (now.spent - reference.spent)(2, 2) * (odometry.x * odometry.x + odometry.y * odometry.y) / 3;
-  covariance += Eigen::Vector3d(kLeastSigma * kLeastSigma + carried,
-                                kLeastSigma * kLeastSigma + carried, kLeastTurn * kLeastTurn)
-                    .asDiagonal();
-  const double beyond = beyondTolerance(odometry, found.motion, covariance);
-  const ScanRegistration stated =
-      judgeMotion(reference.poles, now.poles, odometry, RegistrationOptions());
-  const bool contradicts = beyond > kSigmas && found.score >= stated.score + kMargin;
-  finding.verdict = contradicts ? OdometryVerdict::contradicted : OdometryVerdict::agrees;
+  finding.verdict = OdometryVerdict::agrees;
+  if (beyondOdometry(reference, now, found) <= kSigmas) return finding;
+  const ScanRegistration stated = allowed(reference, now);
+  finding.verdict = OdometryVerdict::contradicted;
+  if (found.score >= stated.score + kMargin && isDistinct(reference, now, found, stated))
+    return finding;
+  finding.verdict = stated.pairs >= 2 ? OdometryVerdict::agrees : OdometryVerdict::unknown;
+  finding.alignment = stated;
   return finding;
+}
+
+/// Whether the poles of a motion can be believed against the odometry. They cannot where alike
+/// poles in a row fit both motions. Poles that stay where they are seen from the vehicle may move
+/// along with it (a lorry beside it, its own parts): if it stands, nearly all of them stay, and it
+/// was slow enough to stop. Any other change of speed that no vehicle makes needs more pairs.
+bool OdometryMonitor::isDistinct(const Reference& reference, const Reference& now,
+                                 const ScanRegistration& found,
+                                 const ScanRegistration& stated) const {
+  // From where the odometry says the vehicle is to where the poles do, in the frame before.
+  const Pose2D off = compose(found.motion, relative(stated.motion, Pose2D()));
+  if (countAlike(reference.poles, now.poles, found.motion, off) >= kAlike * found.pairs)
+    return false;
+  const double seconds = now.time - reference.time;
+  const Pose2D before = scaled(m_speedSeen, seconds);
+  const double change = std::hypot(found.motion.x - before.x, found.motion.y - before.y);
+  const bool isPossible = change <= kTolerance + kMostAcceleration * seconds * seconds;
+  if (countNear(reference.poles, now.poles, Pose2D()) < found.pairs)
+    return isPossible || found.pairs >= kSurePairs;
+  const auto fewer = static_cast<double>(std::min(reference.poles.size(), now.poles.size()));
+  return isPossible && stated.pairs < 2 && found.pairs >= kStandingShare * fewer;
 }
 
 /// One scan while the odometry is believed or suspected.
@@ -295,6 +363,7 @@ MonitoredMotion OdometryMonitor::contradict(Reference& now, const Reference& ref
                                             const ScanRegistration& alignment,
                                             const MonitoredMotion& odometry) {
   const bool decides = m_state == State::suspected || alignment.pairs >= kSurePairs;
+  const Pose2D speedBefore = m_speed;
   MonitoredMotion result = take(now, reference, alignment);
   if (decides) {
     m_state = State::contradicted;
@@ -305,6 +374,7 @@ MonitoredMotion OdometryMonitor::contradict(Reference& now, const Reference& ref
     return result;
   }
   m_state = State::suspected;
+  m_speed = speedBefore;
   result.verdict = OdometryVerdict::unknown;
   result.covariance = odometry.covariance + doubt(odometry.motion, result.motion, 1);
   result.motion = odometry.motion;

@@ -74,6 +74,11 @@ class POLEMCL_EXPORT OdometryMonitor {
   };
   Finding compare(const Reference& reference, const Reference& now, bool search) const;
   ScanRegistration align(const Reference& reference, const Reference& now, bool search) const;
+  static double beyondOdometry(const Reference& reference, const Reference& now,
+                               const ScanRegistration& found);
+  static ScanRegistration allowed(const Reference& reference, const Reference& now);
+  bool isDistinct(const Reference& reference, const Reference& now, const ScanRegistration& found,
+                  const ScanRegistration& stated) const;
   static bool suffices(const ScanRegistration& alignment, const Reference& reference,
                        const Reference& now);
   std::vector<std::size_t> chosen(double time) const;
