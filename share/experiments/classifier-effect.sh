@@ -123,10 +123,6 @@ fi
 rm -r "$work"
 
 jq -s . "$out"/*-[0-9]*.json "$out"/k*.json >"$out/result.json"
-jq -r '.[] | [.drive, .map.precision, .map.recall, .map.f1, .detections.nees_median, .poses.pos_mean,
-    .poses.ang_mean_deg, .poses.pos_max] | map(if type == "number" then . * 10000 | round / 10000 else . // "-" end)
-    | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN { format = "%-22s %9s %9s %9s %11s %9s %9s %9s\n"
-      printf format, "drive", "precision", "recall", "F1", "median NEES", "mean m", "mean deg", "worst m" }
-    { printf format, $1, $2, $3, $4, $5, $6, $7, $8 }' >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.drive, .map.precision, .map.recall, .map.f1, .detections.nees_median, .poses.pos_mean,
+  .poses.ang_mean_deg, .poses.pos_max]' drive precision:4 recall:4 F1:4 "median NEES:4" "mean m:4" "mean deg:4" \
+  "worst m:4" | tee "$out/table.txt"

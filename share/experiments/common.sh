@@ -75,6 +75,42 @@ json_value() {
   sed -n "s/.*\"$2\"[ ]*:[ ]*\\([-+.0-9eE]*\\).*/\\1/p" "$1" | head -n 1
 }
 
+# table FILE FILTER COLUMN...: a table of the rows, arrays, that this filter of jq makes of the JSON file. A column is
+# NAME or NAME:DIGITS, the digits after the point. Columns of numbers stand at the right, others at the left.
+table() (
+  file=$1
+  filter=$2
+  shift 2
+  {
+    printf '%s\t' "$@"
+    echo
+    jq -r "$filter | @tsv" "$file"
+  } | awk -F '\t' '
+    NR == 1 { columns = NF - 1 }
+    {
+      for (i = 1; i <= columns; ++i) {
+        value = $i == "" ? "-" : $i
+        if (NR == 1) {
+          split(value, parts, ":")
+          value = parts[1]
+          digits[i] = parts[2]
+        } else if (value !~ /^-?[0-9][-+.0-9e]*$/) {
+          if (value != "-") left[i] = "-"
+        } else if (digits[i] != "") value = sprintf("%." digits[i] "f", value)
+        cell[NR, i] = value
+        if (length(value) > width[i]) width[i] = length(value)
+      }
+    }
+    END {
+      for (row = 1; row <= NR; ++row) {
+        line = ""
+        for (i = 1; i <= columns; ++i) line = line sprintf("%" left[i] width[i] "s  ", cell[row, i])
+        sub(/ *$/, "", line)
+        print line
+      }
+    }'
+)
+
 # Odometry of simulated drives, unless a script says otherwise: wheel ticks and a gyroscope, with errors that
 # their covariances do not know (simulation.md).
 wheels="simulation.odometry=wheels simulation.odometry_scale=0.01 simulation.odometry_yaw_deg_m=0.01"

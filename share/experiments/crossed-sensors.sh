@@ -85,7 +85,5 @@ done
 
 jq -s . "$out/results" >"$out/result.json"
 rm "$out/results"
-jq -r '.[] | [.street, .map, .lidar, .pos_mean, .ang_mean_deg, .pos_max] | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN { printf "%-10s %-10s %-10s %8s %8s %8s\n", "street", "map", "lidar", "mean m", "mean deg", "worst m" }
-    { printf "%-10s %-10s %-10s %8.4f %8.4f %8.4f\n", $1, $2, $3, $4, $5, $6 }' >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.street, .map, .lidar, .pos_mean, .ang_mean_deg, .pos_max]' \
+  street map lidar "mean m:4" "mean deg:4" "worst m:4" | tee "$out/table.txt"

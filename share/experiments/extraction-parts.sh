@@ -139,8 +139,8 @@ summarize() {
     {quick: ($quick == "yes"), length_m: $length, spacing_m: $spacing} + reduce .[] as $part ({}; . * $part)'
 }
 
-# table FILE: the figures as a table.
-table() {
+# extraction_table FILE: the figures as a table.
+extraction_table() {
   jq -r '
     def pad(n): tostring | if length < n then . + " " * (n - length) else . end;
     def lead(n): tostring | if length < n then " " * (n - length) + . else . end;

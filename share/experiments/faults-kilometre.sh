@@ -61,10 +61,8 @@ faults even odd 502 wrong-map --other-map wrong.polemap --tail 60
 for fault in kidnap wrong-map $lasting; do
   jq -s 'map(del(.failed))' ./*."$fault.json" | jq "{\"$fault\": .}"
 done | jq -s add >faults.json
-jq -r '["fault", "trials", "as demanded", "ok before", "degraded max s", "lost max s", "ok max m", "error after max m",
-  "ok wrong max m", "beyond 5 sigma max s"],
-  (to_entries[] | .value as $v | [.key, ($v | map(.trials) | add), ($v | map(.passed) | add), ($v | map(.ok_before) | add),
-  ($v | map(.degraded.max_s) | max), ($v | map(.lost.max_s) | max), ($v | map(.ok.max_m) | max),
-  ($v | map(.error_after_max_m) | max), ($v | map(.ok_wrong_max_m) | max),
-  ($v | map(.ok_beyond_5_sigma_max_s) | max)]) | @tsv' faults.json | column -t -s "$(printf '\t')" >table.txt
-cat table.txt
+table faults.json 'to_entries[] | [.key] + (.value | [(map(.trials) | add), (map(.passed) | add), (map(.ok_before) | add),
+  (map(.degraded.max_s) | max), (map(.lost.max_s) | max), (map(.ok.max_m) | max), (map(.error_after_max_m) | max),
+  (map(.ok_wrong_max_m) | max), (map(.ok_beyond_5_sigma_max_s) | max)])' fault trials "as demanded" "ok before" \
+  "degraded max s:1" "lost max s:1" "ok max m:1" "error after max m:3" "ok wrong max m:1" "beyond 5 sigma max s:1" |
+  tee table.txt

@@ -35,8 +35,6 @@ drive() {
     "world.track=$tracks/$3.txt.gz" $density
 }
 
-printf '%-6s %9s %6s %6s %6s %10s %9s %9s %11s %9s\n' city map_poles starts right wrong undecided \
-  'metres' '95 %' 'error m' 'query ms'
 files=
 for city in $cities; do
   seed=${city%%:*}
@@ -48,15 +46,15 @@ for city in $cities; do
     --json "$out/$seed.json"
   jq -s '.[0] + .[1]' "$out/$seed.json" "$out/${seed}_timings.json" >"$out/$seed.all"
   files="$files $out/$seed.all"
-  jq -r --arg city "$seed" '[$city, .map_poles, .trials, .right, .wrong, .undecided, .metres_median,
-    .metres_p95, .error_median_m, .query_max_ms] | @tsv' "$out/$seed.all" |
-    awk '{ printf "%-6s %9d %6d %6d %6d %10d %9.1f %9.1f %11.3f %9.1f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }'
 done
 # shellcheck disable=SC2086 # word splitting wanted: a list of files
 jq -s '{cities: ., starts: (map(.trials) | add), right: (map(.right) | add),
   wrong: (map(.wrong) | add), undecided: (map(.undecided) | add), ok_wrong: (map(.ok_wrong) | add),
   query_max_ms: (map(.query_max_ms) | max)}
   | .right_share = .right / .starts | .wrong_share = .wrong / .starts' $files >"$out/result.json"
+table "$out/result.json" '.cities | to_entries[] | [.key + 1] + (.value | [.map_poles, .trials, .right, .wrong,
+  .undecided, .metres_median, .metres_p95, .error_median_m, .query_max_ms])' city "map poles" starts right wrong \
+  undecided metres:1 "95 %:1" "error m:3" "query ms:1"
 jq -r '"\(.starts) starts: right \(.right), wrong \(.wrong), undecided \(.undecided); "
   + "ok said of a wrong pose \(.ok_wrong); longest step with a search \(.query_max_ms * 10 | round / 10) ms"' \
   "$out/result.json"

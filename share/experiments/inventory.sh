@@ -114,10 +114,6 @@ jq -s --slurpfile maps "$out/maps" '{drives: ., maps: $maps, mean: (group_by(.ma
   | map(. as $m | . + {f1: ([$maps[] | select(.map_of == $m.map) | .f1] | add / length)})}' \
   "$out/results" >"$out/result.json"
 rm "$out/results" "$out/maps"
-jq -r '.mean[] | [.map, .f1, .mean_m, .worst_drive_m, .worst_m, .mean_deg, .local_m, .worst_local_m, .sigma_m, .nees_position] | @tsv' \
-  "$out/result.json" |
-  awk -F '\t' 'BEGIN { printf "%-10s %6s %8s %10s %9s %9s %8s %12s %8s %14s\n", "map", "F1", "mean m", "worst mean", "worst m",
-      "mean deg", "local m", "worst local", "sigma m", "NEES position" }
-    { printf "%-10s %6.3f %8.4f %10.4f %9.3f %9.4f %8.4f %12.4f %8.3f %14.2f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }' \
-    >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.mean[] | [.map, .f1, .mean_m, .worst_drive_m, .worst_m, .mean_deg, .local_m, .worst_local_m,
+  .sigma_m, .nees_position]' map F1:3 "mean m:4" "worst mean:4" "worst m:3" "mean deg:4" "local m:4" "worst local:4" \
+  "sigma m:3" "NEES position:2" | tee "$out/table.txt"

@@ -58,9 +58,5 @@ for drive in kitti_odom_00 kitti_odom_00_long; do
 done | jq -s . >"$out/result.json"
 rm "$out/all.json" "$out/near.json"
 
-jq -r '["drive", "method", "map poles", "true", "precision", "labelled within 20 m", "of these found",
-    "recall"], (.[] | [.drive, .method, .map_poles, .true, (.precision * 100 | round / 100),
-    .labelled_near, .found_near, (.recall * 100 | round / 100)]) | @tsv' "$out/result.json" |
-  awk -F '\t' '{ printf "%-19s %-13s %9s %5s %10s %21s %15s %7s\n", $1, $2, $3, $4, $5, $6, $7, $8 }' \
-    >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.drive, .method, .map_poles, .true, .precision, .labelled_near, .found_near, .recall]' \
+  drive method "map poles" true precision:2 "labelled within 20 m" "of these found" recall:2 | tee "$out/table.txt"

@@ -29,15 +29,7 @@ jq -n --slurpfile street "$out/street/result.json" --slurpfile split "$out/split
   --slurpfile visual "$out/visual/result.json" \
   '{street: ($street[0].localization + {world_seed: $street[0].world_seed, map: $street[0].map}),
     split: $split[0], visual: $visual[0]}' >"$out/result.json"
-jq -r --arg street "street, world $seed, 1.5 km" '
-  def shown($digits): . * pow(10; $digits) | round / pow(10; $digits) | tostring;
-  . as $all
-  | ["drive", "position m", "RMSE m", "heading deg", "RMSE deg", "largest m"],
-    (([$street, "street"], ["KITTI split, truth + 2 %", "split"],
-      ["KITTI split, visual odometry", "visual"]) as [$name, $key]
-     | $all[$key].mean as $m
-     | [$name, ($m.pos_mean | shown(4)), ($m.pos_rmse | shown(4)), ($m.ang_mean_deg | shown(3)),
-        ($m.ang_rmse_deg | shown(3)), ($m.pos_max | shown(3))])
-  | @tsv' "$out/result.json" >"$out/table.txt" || die "cannot read $out/result.json"
 echo "Localization, mean of 5 runs of 1000 particles each"
-awk -F '\t' '{ printf "%-32s %11s %9s %12s %9s %10s\n", $1, $2, $3, $4, $5, $6 }' "$out/table.txt"
+table "$out/result.json" "([\"street, world $seed, 1.5 km\", .street], [\"KITTI split, truth + 2 %\", .split],
+  [\"KITTI split, visual odometry\", .visual]) | [.[0], (.[1].mean | .pos_mean, .pos_rmse, .ang_mean_deg, .ang_rmse_deg,
+  .pos_max)]" drive "position m:4" "RMSE m:4" "heading deg:3" "RMSE deg:3" "largest m:3" | tee "$out/table.txt"

@@ -61,11 +61,6 @@ done
 
 jq -s . "$out/results" >"$out/result.json"
 rm "$out/results"
-jq -r 'group_by([.sensor, .rule])[] | (map(.matches) | add) as $m |
-  [.[0].sensor, .[0].rule, $m / (map(.map_poles) | add),
-   $m / (map(.truth_poles) | add), (map(.f1) | min)] | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN { printf "%-8s %-12s %9s %7s %7s %9s\n", "config", "counting", "precision", "recall",
-      "F1", "worst F1" }
-    { printf "%-8s %-12s %9.3f %7.3f %7.3f %9.3f\n", $1, $2, $3, $4, 2 * $3 * $4 / ($3 + $4), $5 }' \
-    >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" 'def share(f): (map(.matches) | add) / (map(f) | add); group_by([.sensor, .rule])[] | [.[0].sensor,
+  .[0].rule, share(.map_poles), share(.truth_poles), share((.map_poles + .truth_poles) / 2), (map(.f1) | min)]' \
+  config counting precision:3 recall:3 F1:3 "worst F1:3" | tee "$out/table.txt"

@@ -62,7 +62,7 @@ done
 rm "$out"/*.rawlog
 jq -s . "$out/results" >"$out/result.json"
 rm "$out/results"
-jq -r '(group_by(.method) | map(max_by(.f1))) + map(select(.thresholds == "map.min_confidence=0.65 map.min_count=3" or
-    .thresholds == "map.min_count=1")) | .[] | [.method, .thresholds, .precision, .recall, .f1] | @tsv' "$out/result.json" |
-  awk -F '\t' '{ printf "%-20s %-44s %.3f %.3f %.3f\n", $1, $2, $3, $4, $5 }' >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '(group_by(.method) | map(max_by(.f1))) +
+  map(select(.thresholds == "map.min_confidence=0.65 map.min_count=3" or .thresholds == "map.min_count=1"))
+  | .[] | [.method, .thresholds, .precision, .recall, .f1]' \
+  method thresholds precision:3 recall:3 F1:3 | tee "$out/table.txt"

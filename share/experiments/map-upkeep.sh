@@ -77,10 +77,6 @@ jq -s '{worlds: ., mean: (group_by([.errors, .aligned]) | map({errors: .[0].erro
     moved_share_max: (map(.moved_share_max) | max), warnings: (map(.warnings) | add)}))}' \
   "$out/results" >"$out/result.json"
 rm "$out/results" "$out/kept.json" "$out/update.json"
-jq -r '.mean[] | [.errors, .aligned, .f1_before, .precision, .recall, .f1, .f1_worst, .shift_m_max, .warnings] | @tsv' \
-  "$out/result.json" | awk -F '\t' 'BEGIN {
-      format = "%-7s %-8s %10s %10s %8s %8s %9s %9s %9s\n"
-      printf format, "errors", "aligned", "F1 before", "precision", "recall", "F1", "worst F1", "shift m", "warnings" }
-    { printf "%-7s %-8s %10.4f %10.4f %8.4f %8.4f %9.4f %9.4f %9d\n", $1, $2, $3, $4, $5, $6, $7, $8, $9 }
-  ' >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" \
+  '.mean[] | [.errors, .aligned, .f1_before, .precision, .recall, .f1, .f1_worst, .shift_m_max, .warnings]' \
+  errors aligned "F1 before:4" precision:4 recall:4 F1:4 "worst F1:4" "shift m:4" warnings | tee "$out/table.txt"

@@ -252,15 +252,11 @@ for world in $(seq 701 720); do apart "$world" $((world == 720 ? 701 : world + 1
 
 jq -s . results >result.json
 rm results
-jq -r '.[] | select(.drive) | [.drive, .loops, .length, .rms, .max, .local, .end_percent, .nees, .seconds, .timing] | @tsv' result.json |
-  awk -F '\t' 'BEGIN {
-      format = "%-26s %6s %8s %8s %8s %8s %8s %6s %8s  %s\n"
-      printf format, "drive", "loops", "way m", "rms m", "max m", "local m", "end %", "NEES", "seconds", "timing" }
-    { printf format, $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }' >table.txt
 {
+  table result.json '.[] | select(.drive) | [.drive, .loops, .length, .rms, .max, .local, .end_percent, .nees, .seconds,
+    .timing]' drive loops "way m:1" "rms m:4" "max m:4" "local m:4" "end %:3" NEES:2 seconds timing
   jq -r '.[] | select(.localized) | "localized in \(.localized), \(.map): ok \(.ok), \(.local) m"' result.json
   jq -r '[.[] | select(.apart) | .refused] | "two streets, refused: \(map(select(.)) | length) of \(length)"' result.json
   jq -r '.[] | select(.truth) | "\(.truth): poses by the points on each side end \(.sides_apart_m) m and \(.sides_apart_deg) degrees apart"' result.json
   jq -r '.[] | select(.earth_rms) | "\(.drive) on Earth: \(.earth_rms) m, NEES \(.earth_nees)"' result.json
-} >>table.txt
-cat table.txt
+} | tee table.txt

@@ -66,8 +66,5 @@ for drive in "hdl32e 5 0.5" "mulran 15 1.5"; do
 done
 jq -s . "$out/results" >"$out/result.json"
 rm "$out/results"
-jq -r '.[] | [.sensor, .speed_m_s, .scans, .pos_mean, .ang_mean_deg, .worst_run_m] | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN { printf "%-8s %6s %-24s %8s %9s %12s\n", "config", "m/s", "scans", "mean m", "mean deg",
-      "worst run m" }
-    { printf "%-8s %6s %-24s %8.4f %9.4f %12.4f\n", $1, $2, $3, $4, $5, $6 }' >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.sensor, .speed_m_s, .scans, .pos_mean, .ang_mean_deg, .worst_run_m]' \
+  config m/s scans "mean m:4" "mean deg:4" "worst run m:4" | tee "$out/table.txt"

@@ -118,13 +118,6 @@ for odometry in noise wheels; do
 done
 jq -s . "$out/results" >"$out/result.json"
 rm "$out/results" "$out/score.json" "$out/ok.json"
-jq -r '.[] | [.odometry, .scale, .yaw_deg_m, .calibrated, .direction, .mean_m, .worst_world_mean_m, .worst_world,
-    .nees, .coverage_95, .not_ok, .ok_beyond_5_sigma_s] | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN {
-      format = "%-8s %6s %9s %10s %9s %8s %8s %6s %8s %9s %6s %8s\n"
-      printf format, "odometry", "scale", "yaw deg/m", "calibrated", "direction", "mean m", "worst m", "world", \
-        "NEES", "coverage", "not ok", "beyond s" }
-    { printf "%-8s %6g %9g %10s %9s %8.4f %8.4f %6s %8.2f %9.3f %6d %8.1f\n", \
-        $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12 }
-  ' >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.odometry, .scale, .yaw_deg_m, .calibrated, .direction, .mean_m, .worst_world_mean_m,
+  .worst_world, .nees, .coverage_95, .not_ok, .ok_beyond_5_sigma_s]' odometry scale "yaw deg/m" calibrated direction \
+  "mean m:4" "worst m:4" world NEES:2 coverage:3 "not ok" "beyond s:1" | tee "$out/table.txt"

@@ -69,10 +69,5 @@ jq -s . "$out/rows.json" >"$out/result.json"
 rm -f "$out/poles.rawlog" "$out/rows.json"
 [ "$(jq length "$out/result.json")" -gt 0 ] || die "no tables in $data/first_implementation"
 
-jq -r '["set", "config", "scans", "theirs", "ours", "ours/scan", "found %", "more %", "largest cm"],
-  (.[] | [.set, .config, .scans, .theirs, .ours, (.ours_per_scan * 10 | round / 10),
-    (.found * 10000 | round / 100), (.more * 10000 | round / 100),
-    (.largest_m * 10000 | round / 100)]) | @tsv' "$out/result.json" |
-  awk -F '\t' '{ printf "%-15s %-17s %5s %6s %6s %9s %8s %7s %10s\n", $1, $2, $3, $4, $5, $6, $7, $8, $9 }' \
-    >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.set, .config, .scans, .theirs, .ours, .ours_per_scan, .found * 100, .more * 100,
+  .largest_m * 100]' set config scans theirs ours ours/scan:1 "found %:2" "more %:2" "largest cm:2" | tee "$out/table.txt"

@@ -143,10 +143,10 @@ jq -s --argjson world "$world" '
     each_scan: apart(.[0]; .[1]), half: apart(.[2]; .[3])}} |
   .each_scan_within_noise = ([.standard_errors_apart.each_scan[] | fabs < 3] | all)' "$out/rows" >"$out/result.json"
 rm "$out/rows"
-jq -r '(["filter", "position m", "sd", "RMSE m", "heading deg", "particles m", "sd"] | @tsv),
-  (.filters[] | [.name, .position_m.mean, .position_m.sd, .position_rmse_m.mean, .heading_rmse_deg.mean,
-    .particles_m.mean, .particles_m.sd] | @tsv),
-  (.standard_errors_apart | to_entries[] | "\(.key): standard errors apart \(.value)"),
-  "resampled at each scan, within Monte Carlo noise (3 standard errors): \(.each_scan_within_noise)"' \
-  "$out/result.json" >"$out/table.txt"
-cat "$out/table.txt"
+{
+  table "$out/result.json" '.filters[] | [.name, .position_m.mean, .position_m.sd, .position_rmse_m.mean,
+    .heading_rmse_deg.mean, .particles_m.mean, .particles_m.sd]' filter "position m:6" sd:6 "RMSE m:6" "heading deg:5" \
+    "particles m:6" sd:6
+  jq -r '(.standard_errors_apart | to_entries[] | "\(.key): standard errors apart \(.value)"),
+    "resampled at each scan, within Monte Carlo noise (3 standard errors): \(.each_scan_within_noise)"' "$out/result.json"
+} | tee "$out/table.txt"

@@ -190,12 +190,7 @@ if [ -n "$kilometre" ]; then half_kilometre; else short_drives; fi
 
 jq -s . "$out/results" >"$out/result.json"
 rm "$out/results"
-jq -r '.[] | [.drive, .map_poles, .pos_mean, .pos_least, .pos_most, .ang_mean_deg, .pos_max, .ok,
-    .mean_ok_m, .mean_ok_deg, .worst_ok_m, .worst_ok_deg, .nees_mean, .coverage_95, .nees_alone, .coverage_95_alone] | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN {
-      format = "%-24s %9s %8s %17s %8s %8s %6s %16s %16s %6s %9s %6s %9s\n"
-      printf format, "drive", "map poles", "mean m", "(least to most)", "mean deg", "worst m", "ok",
-        "mean ok, m deg", "worst ok, m deg", "NEES", "coverage", "alone", "coverage" }
-    { printf "%-24s %9d %8.4f %8.4f %8.4f %8.4f %8.4f %6.2f %8.4f %7.4f %8.4f %7.4f %6.2f %9.3f %6.2f %9.3f\n", $1, $2,
-        $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16 }' >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.drive, .map_poles, .pos_mean, .pos_least, .pos_most, .ang_mean_deg, .pos_max, .ok,
+  .mean_ok_m, .mean_ok_deg, .worst_ok_m, .worst_ok_deg, .nees_mean, .coverage_95, .nees_alone, .coverage_95_alone]' \
+  drive "map poles" "mean m:4" "least:4" "to most:4" "mean deg:4" "worst m:4" ok:2 "mean ok m:4" "mean ok deg:4" \
+  "worst ok m:4" "worst ok deg:4" NEES:2 coverage:3 "NEES alone:2" "coverage:3" | tee "$out/table.txt"

@@ -58,10 +58,6 @@ jq -s 'group_by([.replaced, .spacing_m, -.far_outlier]) | map({replaced: .[0].re
     worst_world_m: (map(.mean_m) | max), right_metres_p95: (map(.right_metres_p95) | max),
     right_metres_max: (map(.right_metres_max) | max), worlds: .})' "$out/results" >"$out/result.json"
 rm "$out/results"
-{
-  echo 'replaced  spacing m  far_outlier  starts  right  ok wrong   mean m  worst world  right after, 95 %  worst'
-  jq -r '.[] | [.replaced, .spacing_m, .far_outlier, .trials, .right, .ok_wrong, .mean_m, .worst_world_m,
-      .right_metres_p95, .right_metres_max] | @tsv' "$out/result.json" |
-    awk '{ printf "%8s %10s %12s %7d %6d %9d %8.4f %12.4f %15.1f m %6.1f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }'
-} >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.replaced, .spacing_m, .far_outlier, .trials, .right, .ok_wrong, .mean_m, .worst_world_m,
+  .right_metres_p95, .right_metres_max]' replaced "spacing m" far_outlier starts right "ok wrong" "mean m:4" \
+  "worst world:4" "right after m, 95 %:1" "worst:1" | tee "$out/table.txt"

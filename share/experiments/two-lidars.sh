@@ -80,8 +80,5 @@ jq -s 'group_by(.name) | map({name: .[0].name, worlds: length, pos_mean: (map(.p
   poles_per_scan: (map(.poles_per_scan) | add / length), apart_m: (map(.apart_m) | add / length),
   apart_sigmas: (map(.apart_sigmas) | add / length)})' "$out/results" >"$out/result.json"
 rm "$out/results"
-jq -r '.[] | [.name, .pos_mean, .worst_world_m, .ang_mean_deg, .poles_per_scan, .apart_m, .apart_sigmas] | @tsv' \
-  "$out/result.json" | awk -F '\t' 'BEGIN { printf "%-20s %8s %12s %9s %11s %8s %12s\n", "LiDARs", "mean m",
-      "worst world", "mean deg", "poles/scan", "apart m", "apart sigma" }
-    { printf "%-20s %8.4f %12.4f %9.4f %11.1f %8.3f %12.1f\n", $1, $2, $3, $4, $5, $6, $7 }' >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.name, .pos_mean, .worst_world_m, .ang_mean_deg, .poles_per_scan, .apart_m, .apart_sigmas]' \
+  LiDARs "mean m:4" "worst world:4" "mean deg:4" "poles/scan:1" "apart m:3" "apart sigma:1" | tee "$out/table.txt"

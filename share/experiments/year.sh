@@ -77,16 +77,12 @@ awk -F , 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
       $(at["pos_mean"]), $(at["ok_share"]), $(at["lost"]) }' "$batch/sessions.csv" |
   jq -s '{sessions: ., mean: (group_by(.setting) | map({setting: .[0].setting,
     pos_mean_m: (map(.pos_mean_m) | add / length), last_to_first: (.[-1].pos_mean_m / .[0].pos_mean_m)}))}' \
-  >"$out/errors.json"
+    >"$out/errors.json"
 jq -s '.[0] + .[1]' "$out/maps.json" "$out/errors.json" >"$out/result.json"
 rm "$out/maps" "$out/maps.json" "$out/errors.json" "$out/all.json" "$out/near.json" "$out/near.csv" "$out/truth.polemap"
 {
-  jq -r '.maps[] | [.setting, .month, .poles, .precision, .recall, .f1, .f1_all, .shift_m, .rotation_deg] | @tsv' \
-    "$out/result.json" | sort -s -t "$(printf '\t')" -k1,1 | awk -F '\t' 'BEGIN {
-        format = "%-7s %-10s %5s %9s %8s %8s %8s %9s %9s\n"
-        printf format, "map", "month", "poles", "precision", "recall", "F1", "F1 all", "shift m", "turn deg" }
-      { printf "%-7s %-10s %5d %9.4f %8.4f %8.4f %8.4f %9.4f %9.5f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9 }'
+  table "$out/result.json" '.maps | sort_by(.setting)[] | [.setting, .month, .poles, .precision, .recall, .f1, .f1_all,
+    .shift_m, .rotation_deg]' map month poles precision:4 recall:4 F1:4 "F1 all:4" "shift m:4" "turn deg:5"
   jq -r '.mean[] | "\(.setting): mean error \(.pos_mean_m) m, last session to first \(.last_to_first)"' \
     "$out/result.json"
-} >"$out/table.txt"
-cat "$out/table.txt"
+} | tee "$out/table.txt"
