@@ -154,56 +154,19 @@ simulate_day() (
   rm -r scans scans.rawlog
 )
 
-error_keys="pos_mean pos_rmse lat_mean lon_mean ang_mean_deg ang_rmse_deg pos_max"
-
-# evaluate_runs FOLDER TRUTH: errors of every FOLDER/run_NN.tum, as run_NN.json and as the table
-# FOLDER/errors.txt, its last row the mean over the runs.
+# evaluate_runs FOLDER TRUTH: errors of every FOLDER/run_NN.tum as run_NN.json; errors.json has their mean, to four
+# digits, and all runs; errors.txt is the same as a table.
 evaluate_runs() {
-  rows=$1/errors.rows
-  : >"$rows"
   for estimate in "$1"/run_[0-9]*.tum; do
     [ -f "$estimate" ] || die "no runs in $1"
-    run=${estimate%.tum}
-    "$bin/pole-eval" trajectory --quiet --truth "$2" --estimate "$estimate" --json "$run.json" \
-      >/dev/null
-    printf '%s' "$(basename "$run")" >>"$rows"
-    for key in $error_keys; do printf ' %s' "$(json_value "$run.json" "$key")" >>"$rows"; done
-    echo >>"$rows"
+    "$bin/pole-eval" trajectory --quiet --truth "$2" --estimate "$estimate" --json "${estimate%.tum}.json" >/dev/null
   done
-  awk '
-    BEGIN {
-      format = "%-8s %10s %10s %9s %9s %10s %10s %9s\n"
-      printf format, "", "position", "position", "lateral", "longit.", "heading", "heading", "largest"
-      printf format, "run", "mean m", "RMSE m", "mean m", "mean m", "mean deg", "RMSE deg", "m"
-    }
-    function row(name, v) {
-      printf "%-8s %10.4f %10.4f %9.4f %9.4f %10.4f %10.4f %9.4f\n", \
-        name, v[2], v[3], v[4], v[5], v[6], v[7], v[8]
-    }
-    { for (i = 2; i <= NF; ++i) { v[i] = $i; sum[i] += $i } row($1, v) }
-    END { for (i = 2; i <= 8; ++i) v[i] = sum[i] / NR; row("mean", v) }
-  ' "$rows" >"$1/errors.txt"
-  rm "$rows"
-}
-
-# runs_json FOLDER: the errors of all runs and their mean, as JSON on standard output.
-runs_json() {
-  echo '{'
-  echo '  "mean": {'
-  awk -v keys="$error_keys" 'END {
-    n = split(keys, key, " ")
-    for (i = 1; i <= n; ++i) printf "    \"%s\": %s%s\n", key[i], $(i + 1), i < n ? "," : ""
-  }' "$1/errors.txt"
-  echo '  },'
-  echo '  "runs": ['
-  first=yes
-  for run in "$1"/run_[0-9]*.json; do
-    [ "$first" = yes ] || echo '    ,'
-    first=no
-    sed 's/^/    /' "$run"
-  done
-  echo '  ]'
-  echo '}'
+  jq -s '. as $runs | {mean: (.[0] | {pos_mean, pos_rmse, lat_mean, lon_mean, ang_mean_deg, ang_rmse_deg, pos_max}
+    | with_entries(.key as $key | .value = ($runs | map(.[$key]) | add / length * 10000 | round / 10000))), runs: .}' \
+    "$1"/run_[0-9]*.json >"$1/errors.json"
+  table "$1/errors.json" '(.runs | to_entries[]), {key: "mean", value: .mean} | [.key, (.value | .pos_mean, .pos_rmse,
+    .lat_mean, .lon_mean, .ang_mean_deg, .ang_rmse_deg, .pos_max)]' run "position m:4" "RMSE m:4" "lateral m:4" \
+    "longit. m:4" "heading deg:4" "RMSE deg:4" "largest m:4" >"$1/errors.txt"
 }
 
 # link_scans DRIVE FOLDER FIRST LAST: the scans FIRST to LAST (from 1) of a drive as a folder of their own, as links.

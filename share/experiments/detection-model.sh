@@ -44,11 +44,10 @@ judge() {
     --map "$out/$1-$2.polemap" --truth "$out/$1-$2-1.tum" --output "$out/$1-$2-runs" \
     --particles 1000 --runs 3 --seed 1
   evaluate_runs "$out/$1-$2-runs" "$out/$1-$2-1.tum"
-  runs_json "$out/$1-$2-runs" >"$out/$1-$2-runs.json"
   jq -n --arg kind "$1" --arg world "$2" \
     --slurpfile sight "$out/$1-$2-0.json" --slurpfile sight1 "$out/$1-$2-1.json" \
     --slurpfile again "$out/$1-$2-0-repeated.json" --slurpfile again1 "$out/$1-$2-1-repeated.json" \
-    --slurpfile map "$out/$1-$2-map.json" --slurpfile runs "$out/$1-$2-runs.json" '
+    --slurpfile map "$out/$1-$2-map.json" --slurpfile runs "$out/$1-$2-runs/errors.json" '
     ($sight[0] | keys | map(select(. != "range_edges_m"))) as $keys
     | {kind: $kind, world: ($world | tonumber)}
     + ($keys | map({(.): (if . == "recall" then

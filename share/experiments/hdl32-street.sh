@@ -5,7 +5,7 @@
 #   OUT     gets the map, the trajectories, errors.txt and result.json (the scans are removed again)
 #   SEED    of the world, 1 unless given
 #   CONFIG  settings, config/hdl32e.ini unless given
-# Programs: build/bin, or POLEMCL_BIN. Needs 8 GB of disk while it runs.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq, and 8 GB of disk while it runs.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -16,6 +16,7 @@ out=$1
 seed=${2:-1}
 settings=${3:-$top/config/hdl32e.ini}
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
+find_tools jq
 mkdir -p "$out"
 
 simulate_day "$settings" "$out" "$seed" 1500 0
@@ -31,15 +32,8 @@ simulate_day "$settings" "$out" "$seed" 1500 1
 
 evaluate_runs "$out/runs" "$out/day1.tum"
 cp "$out/runs/errors.txt" "$out/errors.txt"
-{
-  echo '{'
-  echo "  \"world_seed\": $seed,"
-  echo '  "map":'
-  sed 's/^/    /' "$out/map.json"
-  echo '  ,"localization":'
-  runs_json "$out/runs" | sed 's/^/    /'
-  echo '}'
-} >"$out/result.json"
+jq -s --argjson seed "$seed" '{world_seed: $seed, map: .[0], localization: .[1]}' "$out/map.json" "$out/runs/errors.json" \
+  >"$out/result.json"
 
 echo "Simulated street of 1.5 km, world $seed, day 1 in the map of day 0; settings: $settings"
 printf 'map, one to one at 1 m: precision %.3f, recall %.3f, F1 %.3f\n' \

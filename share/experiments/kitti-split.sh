@@ -7,7 +7,7 @@
 #             odometry alone: from the true start with a likelihood that no pole can change
 #   CONFIG    settings, config/kitti.ini unless given
 #   ODOMETRY  "visual": DATA_DIR/odometry.txt instead of the noisy truth
-# Programs: build/bin, or POLEMCL_BIN.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -23,6 +23,7 @@ case ${4:-noisy} in
   *) die "odometry must be noisy or visual, not $4" ;;
 esac
 find_programs pole-import pole-map pole-localize pole-eval
+find_tools jq
 [ -d "$data/velodyne" ] || die "no scans in $data/velodyne"
 mkdir -p "$out"
 
@@ -45,7 +46,7 @@ first=$(awk '!/^#/ { printf "%.9g,%.9g,%.9g", $2, $3,
 evaluate_runs "$out/odometry" "$out/odd.tum"
 evaluate_runs "$out/runs" "$out/odd.tum"
 cp "$out/runs/errors.txt" "$out/errors.txt"
-runs_json "$out/runs" >"$out/result.json"
+cp "$out/runs/errors.json" "$out/result.json"
 echo "Map from the even scans, localized on the odd ones; settings: $config"
 cat "$out/errors.txt"
-sed -n '$s/^mean   /alone  /p' "$out/odometry/errors.txt"
+sed -n '$s/^mean /alone/p' "$out/odometry/errors.txt"
