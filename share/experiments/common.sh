@@ -51,6 +51,26 @@ find_tools() {
   done
 }
 
+# find_modules NAME...: the same for modules of Python.
+find_modules() {
+  for module in "$@"; do
+    /usr/bin/python3 -c "import $module" 2>/dev/null || die "$module is needed: install python3-$module"
+  done
+}
+
+# make_out FOLDER: makes the folder of the results, and sets $out. Lines of a run that was stopped are removed.
+make_out() {
+  mkdir -p "$1"
+  out=$(cd "$1" && pwd)
+  rm -f "$out/results"
+}
+
+# collect_results FILTER: $out/result.json from the lines of $out/results, as an array, by this filter of jq.
+collect_results() {
+  jq -s "$1" "$out/results" >"$out/result.json"
+  rm "$out/results"
+}
+
 # copy_settings FROM TO SECTION.KEY=VALUE...: copies an INI file, with these values changed or added. Works in a
 # shell of its own, as draw_drive does, so that its variables are not those of the script.
 copy_settings() (
@@ -147,11 +167,9 @@ simulate_day() (
     "world.length_m=$length" "world.seed=$seed" "world.day=$day" "$@"
   cd "$folder" || exit
   "$bin/pole-simulate" --quiet --config "day$day.ini" --output scans
-  "$bin/pole-import" folder --quiet --input scans --output scans.rawlog
-  "$bin/pole-extract" --quiet --config "day$day.ini" --input scans.rawlog --output "day$day.rawlog"
-  mv scans.tum "day$day.tum"
+  find_poles scans "day$day" "day$day.ini"
   mv scans/poles_gt.csv "poles_day$day.csv"
-  rm -r scans scans.rawlog
+  rm -r scans
 )
 
 # evaluate_runs FOLDER TRUTH: errors of every FOLDER/run_NN.tum as run_NN.json; errors.json has their mean, to four
@@ -169,6 +187,53 @@ evaluate_runs() {
     "longit. m:4" "heading deg:4" "RMSE deg:4" "largest m:4" >"$1/errors.txt"
 }
 
+# find_poles FOLDER DRIVE CONFIG [OPTION...]: DRIVE.rawlog with the poles of these scans, and DRIVE.tum. The options
+# are those of pole-import.
+find_poles() (
+  folder=$1
+  drive=$2
+  config=$3
+  shift 3
+  "$bin/pole-import" folder --quiet --input "$folder" --output "$drive.scans.rawlog" "$@"
+  "$bin/pole-extract" --quiet --config "$config" --input "$drive.scans.rawlog" --output "$drive.rawlog"
+  mv "$drive.scans.tum" "$drive.tum"
+  rm "$drive.scans.rawlog"
+)
+
+# map_drive DRIVE MAP [OPTION...]: the map of DRIVE.rawlog at its true poses, with the settings DRIVE.ini.
+map_drive() (
+  drive=$1
+  map=$2
+  shift 2
+  "$bin/pole-map" build --quiet --config "$drive.ini" --input "$drive.rawlog" --truth "$drive.tum" --output "$map" "$@"
+)
+
+# localize_drive DRIVE MAP FOLDER [OPTION...]: runs of DRIVE.rawlog in the map, with the settings DRIVE.ini.
+localize_drive() (
+  drive=$1
+  map=$2
+  folder=$3
+  shift 3
+  "$bin/pole-localize" --quiet --config "$drive.ini" --input "$drive.rawlog" --map "$map" --truth "$drive.tum" \
+    --output "$folder" "$@"
+)
+
+# score_map RADIUS TRUTH MAP JSON: a map against true poles, one to one within this radius.
+score_map() {
+  "$bin/pole-eval" map --quiet --one-to-one --radius "$1" --truth "$2" --map "$3" --json "$4" >/dev/null
+}
+
+# score_near RADIUS TRUTH NEAR MAP: precision against all true poles, recall of those near the path, and F1, as JSON.
+score_near() {
+  score_map "$1" "$2" "$4" "$4.all.json"
+  score_map "$1" "$3" "$4" "$4.near.json"
+  jq -s '{precision: .[0].precision, recall: .[1].recall} | .f1 = 2 * .precision * .recall / (.precision + .recall)' \
+    "$4.all.json" "$4.near.json"
+}
+
+# LiDARs that turn clockwise, begin at the back, and are stamped when they face forward: options of pole-import.
+clockwise="--turn clockwise --cut-deg 180 --stamp-turn 0.5"
+
 # link_scans DRIVE FOLDER FIRST LAST: the scans FIRST to LAST (from 1) of a drive as a folder of their own, as links.
 link_scans() (
   from=$(cd "$1" && pwd)
@@ -183,6 +248,5 @@ kilometre_arguments() {
   check_arguments 3 3 "$@"
   labels=$(cd "$1/kitti_odom_00_km" && pwd)
   kilometre=$(cd "$2" && pwd)
-  mkdir -p "$3"
-  out=$(cd "$3" && pwd)
+  make_out "$3"
 }

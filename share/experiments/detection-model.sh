@@ -13,12 +13,11 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 any "$@"
-out=$1
+make_out "$1"
 shift
 [ $# -gt 0 ] || set -- 501 502 503
 find_tools jq
 find_programs pole-simulate pole-map pole-localize pole-eval
-mkdir -p "$out"
 
 # drive NAME SEED DAY MODEL: simulates NAME.rawlog, cast when MODEL is empty.
 drive() {
@@ -36,13 +35,9 @@ judge() {
     "$bin/pole-eval" repeatability --quiet --poles "$out/$name.rawlog" --truth "$out/$name.tum" \
       --json "$out/$name-repeated.json"
   done
-  "$bin/pole-map" build --quiet --config "$out/$1-$2-0.ini" --input "$out/$1-$2-0.rawlog" \
-    --truth "$out/$1-$2-0.tum" --output "$out/$1-$2.polemap"
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$out/$1-$2-0_poles_gt.csv" \
-    --map "$out/$1-$2.polemap" --json "$out/$1-$2-map.json" >/dev/null
-  "$bin/pole-localize" --quiet --config "$out/$1-$2-1.ini" --input "$out/$1-$2-1.rawlog" \
-    --map "$out/$1-$2.polemap" --truth "$out/$1-$2-1.tum" --output "$out/$1-$2-runs" \
-    --particles 1000 --runs 3 --seed 1
+  map_drive "$out/$1-$2-0" "$out/$1-$2.polemap"
+  score_map 0.5 "$out/$1-$2-0_poles_gt.csv" "$out/$1-$2.polemap" "$out/$1-$2-map.json"
+  localize_drive "$out/$1-$2-1" "$out/$1-$2.polemap" "$out/$1-$2-runs" --particles 1000 --runs 3 --seed 1
   evaluate_runs "$out/$1-$2-runs" "$out/$1-$2-1.tum"
   jq -n --arg kind "$1" --arg world "$2" \
     --slurpfile sight "$out/$1-$2-0.json" --slurpfile sight1 "$out/$1-$2-1.json" \

@@ -65,8 +65,7 @@ real_drive() {
 # map_score METHOD TRUTH METRIC: precision or recall of the world's map; 0 without a map.
 map_score() {
   if [ -f "$work/$1.polemap" ]; then
-    "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$2" \
-      --map "$work/$1.polemap" --json "$work/map.json"
+    score_map 0.5 "$2" "$work/$1.polemap" "$work/map.json"
     json_value "$work/map.json" "$3"
   else
     echo 0

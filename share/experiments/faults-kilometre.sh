@@ -18,21 +18,17 @@ data=$(cd "$1" && pwd)
 find_programs pole-import pole-extract pole-map pole-eval
 find_tools jq
 config=$top/config/kitti.ini
-clockwise="--turn clockwise --cut-deg 180 --stamp-turn 0.5"
 cd "$out"
 rm -f ./*.json ./*.txt
 
-# poles_of FOLDER NAME [OPTION...]: NAME.rawlog with the poles, NAME.tum.
+# poles_of FOLDER NAME [OPTION...]: NAME.rawlog with the poles, NAME.tum, NAME.polemap.
 poles_of() {
   folder=$1 name=$2
   shift 2
   # shellcheck disable=SC2086 # several words
-  "$bin/pole-import" folder --quiet --input "$folder" --output "$name.scans.rawlog" $clockwise "$@"
-  mv "$name.scans.tum" "$name.tum"
-  "$bin/pole-extract" --quiet --config "$config" --input "$name.scans.rawlog" --output "$name.rawlog"
-  rm "$name.scans.rawlog"
-  "$bin/pole-map" build --quiet --config "$config" --input "$name.rawlog" --truth "$name.tum" \
-    --output "$name.polemap" >/dev/null
+  find_poles "$folder" "$name" "$config" $clockwise "$@"
+  cp "$config" "$name.ini"
+  map_drive "$name" "$name.polemap"
 }
 
 # faults SCANS MAP SEED FAULT [OPTION...]

@@ -26,14 +26,12 @@ if [ "${1:-}" = --quick ]; then
   shift
 fi
 check_arguments 1 2 "$@"
-out=$1
+make_out "$1"
 track=${2:-${POLEMCL_DATA:+$POLEMCL_DATA/tracks/kaist01.txt.gz}}
 road=world.length_m=3000
 [ -z "$track" ] || road=world.track=$track
 find_programs pole-simulate pole-map pole-eval
 find_tools jq
-mkdir -p "$out"
-: >"$out/table.txt"
 
 # drive NAME WORLD DAY DRIVE [SECTION.KEY=VALUE...]: NAME.rawlog, NAME.tum, with the settings NAME.ini.
 drive() {
@@ -46,8 +44,7 @@ drive() {
 # map_of WORLD: the map of day 0, mapWORLD.polemap.
 map_of() {
   drive "map$1" "$1" 0 1
-  "$bin/pole-map" build --quiet --config "$out/map$1.ini" --input "$out/map$1.rawlog" \
-    --truth "$out/map$1.tum" --output "$out/map$1.polemap"
+  map_drive "$out/map$1" "$out/map$1.polemap"
 }
 
 # faults WORLD DRIVE FAULT TRIALS SEED OPTIONS...: appends to FAULT.txt, writes FAULT_WORLD_DRIVE.json.

@@ -12,24 +12,18 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 3 "$@"
-out=$1
+make_out "$1"
 seed=${2:-1}
 settings=${3:-$top/config/hdl32e.ini}
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
 find_tools jq
-mkdir -p "$out"
 
 simulate_day "$settings" "$out" "$seed" 1500 0
 simulate_day "$settings" "$out" "$seed" 1500 1
 
-"$bin/pole-map" build --quiet --config "$out/day0.ini" --input "$out/day0.rawlog" \
-  --truth "$out/day0.tum" --output "$out/map.polemap" --csv "$out/map.csv"
-"$bin/pole-eval" map --quiet --one-to-one --radius 1.0 --truth "$out/poles_day0.csv" \
-  --map "$out/map.polemap" --json "$out/map.json" >/dev/null
-"$bin/pole-localize" --quiet --config "$out/day1.ini" --input "$out/day1.rawlog" \
-  --map "$out/map.polemap" --truth "$out/day1.tum" --output "$out/runs" \
-  --particles 1000 --runs 5 --seed 1
-
+map_drive "$out/day0" "$out/map.polemap" --csv "$out/map.csv"
+score_map 1.0 "$out/poles_day0.csv" "$out/map.polemap" "$out/map.json"
+localize_drive "$out/day1" "$out/map.polemap" "$out/runs" --particles 1000 --runs 5 --seed 1
 evaluate_runs "$out/runs" "$out/day1.tum"
 cp "$out/runs/errors.txt" "$out/errors.txt"
 jq -s --argjson seed "$seed" '{world_seed: $seed, map: .[0], localization: .[1]}' "$out/map.json" "$out/runs/errors.json" \

@@ -18,19 +18,12 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 3 "$@"
-mkdir -p "$1"
-out=$(cd "$1" && pwd)
+make_out "$1"
 first=${2:-941}
 last=$((first + ${3:-4} - 1))
 find_programs pole-simulate pole-map pole-localize pole-eval
 find_tools jq
-/usr/bin/python3 -c "import numpy" 2>/dev/null || die "numpy is needed: install python3-numpy"
-
-# localize DRIVE MAP FOLDER
-localize() {
-  "$bin/pole-localize" --quiet --config "$1.ini" --input "$1.rawlog" --map "$2" --truth "$1.tum" \
-    --output "$3" --seed 1 >/dev/null
-}
+find_modules numpy
 
 # score NAME WORLD DRIVE FOLDER SIGMA: adds a line to OUT/results
 score() {
@@ -62,13 +55,11 @@ sharpen() {
 }
 
 map_score() { # WORLD NAME MAP
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.25 --truth "$out/$1/1_poles_gt.csv" --map "$3" \
-    --json "$3.json" >/dev/null
+  score_map 0.25 "$out/$1/1_poles_gt.csv" "$3" "$3.json"
   jq --arg name "$2" --argjson world "$1" '{map_of: $name, world: $world, precision, recall, f1}' "$3.json" \
     >>"$out/maps"
 }
 
-: >"$out/results"
 : >"$out/maps"
 for world in $(seq "$first" "$last"); do
   here=$out/$world
@@ -85,24 +76,23 @@ for world in $(seq "$first" "$last"); do
     --crs "+proj=ortho +lat_0=52 +lon_0=13 +ellps=WGS84" --output "$here/inventory.polemap"
   map_score "$world" inventory "$here/inventory.polemap"
   for drive in 1 2 3 4; do
-    localize "$here/$drive" "$here/inventory.polemap" "$here/in-inventory-$drive"
+    localize_drive "$here/$drive" "$here/inventory.polemap" "$here/in-inventory-$drive" --seed 1
   done
   score inventory "$world" "$here/1" "$here/in-inventory-1" 0
   sharpen "$world" "$here/one.polemap" 1
   map_score "$world" "one drive" "$here/one.polemap"
   for drive in 2 3; do
-    localize "$here/$drive" "$here/one.polemap" "$here/in-one-$drive"
+    localize_drive "$here/$drive" "$here/one.polemap" "$here/in-one-$drive" --seed 1
     score "one drive" "$world" "$here/$drive" "$here/in-one-$drive" "$sigma"
   done
   sharpen "$world" "$here/four.polemap" 1 2 3 4
   map_score "$world" four "$here/four.polemap"
-  localize "$here/5" "$here/four.polemap" "$here/in-four-5"
+  localize_drive "$here/5" "$here/four.polemap" "$here/in-four-5" --seed 1
   score four "$world" "$here/5" "$here/in-four-5" "$sigma"
-  "$bin/pole-map" build --quiet --config "$here/1.ini" --input "$here/1.rawlog" --truth "$here/1.tum" \
-    --output "$here/true.polemap"
+  map_drive "$here/1" "$here/true.polemap"
   map_score "$world" truth "$here/true.polemap"
   for drive in 2 3; do
-    localize "$here/$drive" "$here/true.polemap" "$here/in-true-$drive"
+    localize_drive "$here/$drive" "$here/true.polemap" "$here/in-true-$drive" --seed 1
     score truth "$world" "$here/$drive" "$here/in-true-$drive" 0
   done
 done

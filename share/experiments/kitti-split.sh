@@ -15,7 +15,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 4 "$@"
 data=$1
-out=$2
+make_out "$2"
 config=${3:-$top/config/kitti.ini}
 case ${4:-noisy} in
   noisy) odometry="--odometry-noise 0.02 --seed 7" ;;
@@ -25,7 +25,6 @@ esac
 find_programs pole-import pole-map pole-localize pole-eval
 find_tools jq
 [ -d "$data/velodyne" ] || die "no scans in $data/velodyne"
-mkdir -p "$out"
 
 "$bin/pole-import" folder --quiet --input "$data" --output "$out/even.rawlog" --every 2 --offset 0
 # shellcheck disable=SC2086

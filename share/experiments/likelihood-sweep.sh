@@ -14,14 +14,13 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 any "$@"
 data=$1
-out=$2
+make_out "$2"
 length=${3:-400}
 shift 2
 [ $# = 0 ] || shift
 [ $# != 0 ] || set -- 21 22
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
 find_tools jq
-mkdir -p "$out"
 
 for world in "$@"; do
   folder=$out/world$world
@@ -30,8 +29,7 @@ for world in "$@"; do
   for day in 0 1; do
     simulate_day "$top/config/hdl32e.ini" "$folder" "$world" "$length" $day $noise
   done
-  "$bin/pole-map" build --quiet --config "$folder/day0.ini" --input "$folder/day0.rawlog" \
-    --truth "$folder/day0.tum" --output "$folder/map.polemap"
+  map_drive "$folder/day0" "$folder/map.polemap"
 done
 "$top/share/experiments/kitti-split.sh" "$data" "$out/split" >/dev/null
 "$bin/pole-extract" --quiet --config "$top/config/kitti.ini" --input "$out/split/odd.rawlog" \
@@ -62,7 +60,6 @@ try_setting() {
       split_deg: .[-1].ang_mean_deg}' >>"$out/results"
 }
 
-: >"$out/results"
 try_setting default - "$@"
 for value in 0.01 0.02 0.03 0.05 0.08 0.15 0.3; do try_setting sigma_m $value "$@"; done
 for value in 0.01 0.02 0.05 0.1 0.2 0.4; do try_setting outlier $value "$@"; done

@@ -13,12 +13,11 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 3 "$@"
 data=$1
-out=$2
+make_out "$2"
 seed=${3:-7}
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
 find_tools jq
 [ -f "$data/odometry.txt" ] || die "no odometry in $data/odometry.txt"
-mkdir -p "$out"
 
 "$top/share/experiments/hdl32-street.sh" "$out/street" "$seed" >/dev/null
 "$top/share/experiments/kitti-split.sh" "$data" "$out/split" >/dev/null

@@ -13,8 +13,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 3 "$@"
-mkdir -p "$1"
-out=$(cd "$1" && pwd)
+make_out "$1"
 first=${2:-311}
 last=$((first + ${3:-3} - 1))
 find_programs pole-simulate pole-import pole-extract pole-map pole-eval
@@ -26,14 +25,12 @@ build() {
   # shellcheck disable=SC2086 # several words
   "$bin/pole-map" build --quiet --config "$here/street.ini" $4 --input "$here/poles.rawlog" \
     --truth "$here/street.tum" --output "$here/$3.polemap"
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$here/poles.csv" \
-    --map "$here/$3.polemap" --json "$here/$3.json" >/dev/null
+  score_map 0.5 "$here/poles.csv" "$here/$3.polemap" "$here/$3.json"
   jq -c --arg sensor "$1" --argjson world "$2" --arg rule "$3" \
     '{sensor: $sensor, world: $world, rule: $rule, precision, recall, f1, matches, map_poles, truth_poles}' \
     "$here/$3.json" >>"$out/results"
 }
 
-: >"$out/results"
 for sensor in kitti hdl32e vlp16; do
   # The former defaults beside those of today.
   today="--set map.min_confidence=0.5" # what 0 stands for where scans are read
@@ -59,8 +56,7 @@ for sensor in kitti hdl32e vlp16; do
   done
 done
 
-jq -s . "$out/results" >"$out/result.json"
-rm "$out/results"
+collect_results .
 table "$out/result.json" 'def share(f): (map(.matches) | add) / (map(f) | add); group_by([.sensor, .rule])[] | [.[0].sensor,
   .[0].rule, share(.map_poles), share(.truth_poles), share((.map_poles + .truth_poles) / 2), (map(.f1) | min)]' \
   config counting precision:3 recall:3 F1:3 "worst F1:3" | tee "$out/table.txt"

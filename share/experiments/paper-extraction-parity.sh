@@ -16,10 +16,9 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 2 "$@"
 data=$1
-out=$2
+make_out "$2"
 find_programs pole-import pole-extract
 find_tools jq
-mkdir -p "$out"
 
 # partners THEIRS OURS SIDE SCANS: one JSON object. SIDE: -1 where y counts to the right in THEIRS.
 partners() {
@@ -64,9 +63,8 @@ compare() {
     "$bin/pole-import" nclt --quiet --input "$data/nclt_scan" --output "$out/nclt_scan.rawlog"
     compare nclt_scan -1 "$top/config/paper/nclt.ini"
   fi
-} >"$out/rows.json"
-jq -s . "$out/rows.json" >"$out/result.json"
-rm -f "$out/poles.rawlog" "$out/rows.json"
+} | jq -s . >"$out/result.json"
+rm -f "$out/poles.rawlog"
 [ "$(jq length "$out/result.json")" -gt 0 ] || die "no tables in $data/first_implementation"
 
 table "$out/result.json" '.[] | [.set, .config, .scans, .theirs, .ours, .ours_per_scan, .found * 100, .more * 100,

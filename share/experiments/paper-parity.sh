@@ -19,15 +19,13 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 3 "$@"
 data=$(cd "$1" && pwd)
-out=$2
+make_out "$2"
 seeds=${3:-20}
 find_programs pole-import pole-map pole-extract pole-localize
 [ "$seeds" -ge 1 ] 2>/dev/null || die "SEEDS must be a number of at least 1, not $seeds"
 for file in velodyne times.txt poses.txt poses_scan_matching.txt; do
   [ -e "$data/$file" ] || die "no $file in $data"
 done
-mkdir -p "$out"
-out=$(cd "$out" && pwd)
 
 # Cadence, particles and start of the protocol replace those of the settings.
 map_options="--set map.every_scan=true --set map.middle=nearest"

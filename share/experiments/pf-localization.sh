@@ -21,16 +21,14 @@ find_programs pole-simulate pole-map pole-localize pole-eval
 find_tools jq pf-localization
 library=$(find "$bin/../lib" -name 'libpolemcl.so' 2>/dev/null | head -n 1)
 [ -n "$library" ] || die "no libpolemcl.so in $bin/../lib: build first"
-mkdir -p "$1"
-out=$(cd "$1" && pwd)
+make_out "$1"
 settle=40 # scans at the start that do not count: 20 m
 radius=0.5
 turn=2
 
 draw_drive "$out/map" "$top/config/hdl32e.ini" "$world" 0 world.length_m=600
 draw_drive "$out/drive" "$top/config/hdl32e.ini" "$world" 1 world.length_m=600 simulation.drive_seed=1
-"$bin/pole-map" build --quiet --config "$out/map.ini" --input "$out/map.rawlog" --truth "$out/map.tum" \
-  --output "$out/map.polemap"
+map_drive "$out/map" "$out/map.polemap"
 "$bin/pole-eval" mrpt-truth --quiet --truth "$out/drive.tum" --output "$out/truth.txt"
 awk '!/^#/ && n++ >= settle' settle=$settle "$out/drive.tum" >"$out/settled.tum"
 awk '!/^#/ { print $2, $3, 2 * atan2($7, $8) * 57.29577951308232; exit }' "$out/drive.tum" >"$out/start"

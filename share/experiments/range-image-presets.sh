@@ -12,14 +12,12 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 4 4 "$@"
-out=$1
+make_out "$1"
 first=$2
 count=$3
 length=$4
 find_tools jq
 find_programs pole-simulate pole-import pole-extract pole-eval
-mkdir -p "$out"
-out=$(cd "$out" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -56,15 +54,13 @@ while read -r lidar height rows up down; do
     range_image.max_bottom_m=3.23 range_image.min_top_m=2.43 range_image.fit_max_z_m=4.73
   printf '[sensor]\nmodel = %s\nheight_m = %s\n[extraction]\nmethod = range_image\n' "$lidar" "$height" \
     >"$work/own.ini"
-  world=$first
-  while [ "$world" -lt $((first + count)) ]; do
+  for world in $(seq "$first" $((first + count - 1))); do
     copy_settings "$work/own.ini" "$work/street.ini" simulation.spacing_m=2 "world.seed=$world" \
       "world.length_m=$length"
     "$bin/pole-simulate" --quiet --config "$work/street.ini" --output "$work/scans"
     "$bin/pole-import" folder --quiet --input "$work/scans" --output "$work/scans.rawlog"
     extracted hand
     extracted own
-    world=$((world + 1))
   done
   row "$lidar" >>"$out/table.txt"
 done <<END

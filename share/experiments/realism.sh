@@ -15,14 +15,13 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/extraction-parts.sh"
 
 check_arguments 1 any "$@"
-out=$1
+make_out "$1"
 sensor=${2-hdl32e}
 shift
 [ $# = 0 ] || shift
 seeds=${*:-321 322}
 find_tools jq
 find_programs pole-simulate pole-eval
-mkdir -p "$out"
 : >"$out/scores"
 
 for scale in 0 0.5 1 2; do

@@ -15,12 +15,11 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 3 "$@"
-out=$1
+make_out "$1"
 world=${2:-500}
 runs=${3:-10}
 find_programs pole-batch pole-map pole-eval
 find_tools jq
-mkdir -p "$out"
 batch=$out/batch
 tasks=$batch/tasks
 config=$top/config/hdl32e.ini
@@ -45,8 +44,8 @@ near() {
 score() {
   poles=$tasks/poles.$2/$2_poles_gt.csv
   near "$poles" "$tasks/poles.may/may.tum" >"$out/near.csv"
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$poles" --map "$3" --json "$out/all.json"
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$out/near.csv" --map "$3" --json "$out/near.json"
+  score_map 0.5 "$poles" "$3" "$out/all.json"
+  score_map 0.5 "$out/near.csv" "$3" "$out/near.json"
   jq -n --arg setting "$1" --arg month "$2" --slurpfile all "$out/all.json" --slurpfile near "$out/near.json" \
     '$all[0] as $a | $near[0] as $n | {setting: $setting, month: $month, poles: $a.map_poles,
       precision: $a.precision, recall: $n.recall, f1: (2 * $a.precision * $n.recall / ($a.precision + $n.recall)),
