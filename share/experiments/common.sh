@@ -131,6 +131,25 @@ table() (
     }'
 )
 
+# fault_results NAME FILE...: results of pole-eval faults, without the list of those that failed, under a name.
+fault_results() {
+  kind=$1
+  shift
+  jq -s --arg kind "$kind" '{($kind): map(del(.failed))}' "$@"
+}
+
+# fault_table FILE: faults.json, of all but healthy drives, a line for each fault.
+fault_table() {
+  table "$1" 'del(.healthy, .half) | to_entries[] | [.key] + (.value | [(map(.trials) | add), (map(.passed) | add),
+    (map(.ok_before) | add), (map(.degraded.max_s) | max), (map(.lost.max_s) | max), (map(.lost.max_m) | max),
+    (map(.ok.max_m) | max), (map(.error_after_max_m) | max), (map(.ok_wrong_max_m) | max),
+    (map(.ok_beyond_5_sigma_max_s) | max)])' fault trials "as demanded" "ok before" "degraded max s:1" "lost max s:1" \
+    "lost max m:1" "ok max m:1" "error after max m:3" "ok wrong max m:1" "beyond 5 sigma max s:1"
+}
+
+# Faults that last for a while, of pole-eval faults.
+lasting="blind stuck slip jump clock moved half-gone snow"
+
 # Odometry of simulated drives, unless a script says otherwise: wheel ticks and a gyroscope, with errors that
 # their covariances do not know (simulation.md).
 wheels="simulation.odometry=wheels simulation.odometry_scale=0.01 simulation.odometry_yaw_deg_m=0.01"

@@ -72,22 +72,16 @@ for seed in "$@"; do
   judge drawn "$seed"
 done | jq -s . >"$out/result.json"
 
-jq -r '
-  def cell: if . == null then "-" else (. * 1000 | round / 1000 | tostring) end;
+# shellcheck disable=SC2016,SC2046 # names of jq; a list of words
+table "$out/result.json" 'def cell: if . == null then "-" else (. * 1000 | round / 1000 | tostring) end;
   [.[] | select(.kind == "cast")] as $cast | [.[] | select(.kind == "drawn")] as $drawn
   | def row(name; get): [name] + ([$cast, $drawn] | transpose | map(map(get | cell) | join(" / "))
       ) + [([$cast, $drawn] | map(map(get) | add / length | cell) | join(" / "))];
-  ([["cast / drawn"] + ($cast | map("world \(.world)")) + ["mean"]]
-   + [row("detections per scan"; .per_scan), row("false per scan"; .false_per_scan),
-      row("of lasting objects"; .lasting_false_per_scan)]
-   + [range(0; $cast[0].recall | length) as $i
-      | row("found, \($i * 5) to \($i * 5 + 5) m"; .recall[$i])]
-   + [row("centre median, m"; .centre_median_m), row("centre 90 %, m"; .centre_p90_m),
-      row("NEES mean"; .nees_mean), row("NEES median"; .nees_median),
-      row("confidence"; .confidence), row("found again"; .repeated),
-      row("way found, m"; .found_run_m), row("way missed, m"; .missed_run_m),
-      row("map precision"; .map_precision), row("map recall"; .map_recall),
-      row("map F1"; .map_f1), row("position error, m"; .pos_mean),
-      row("heading error, deg"; .ang_mean_deg)])[] | "| " + join(" | ") + " |"
-' "$out/result.json" | sed '1{p;s/[^|]/-/g;s/^|-*|/|---|/}' >"$out/table.txt"
-cat "$out/table.txt"
+  row("detections per scan"; .per_scan), row("false per scan"; .false_per_scan),
+  row("of lasting objects"; .lasting_false_per_scan),
+  (range(0; $cast[0].recall | length) as $i | row("found, \($i * 5) to \($i * 5 + 5) m"; .recall[$i])),
+  row("centre median, m"; .centre_median_m), row("centre 90 %, m"; .centre_p90_m), row("NEES mean"; .nees_mean),
+  row("NEES median"; .nees_median), row("confidence"; .confidence), row("found again"; .repeated),
+  row("way found, m"; .found_run_m), row("way missed, m"; .missed_run_m), row("map precision"; .map_precision),
+  row("map recall"; .map_recall), row("map F1"; .map_f1), row("position error, m"; .pos_mean),
+  row("heading error, deg"; .ang_mean_deg)' "cast / drawn" $(printf 'world-%s ' "$@") mean | tee "$out/table.txt"

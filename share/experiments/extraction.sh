@@ -53,4 +53,4 @@ for sensor in hdl64e hdl32e os1_64 vlp16; do
 done
 
 summarize "$quick" >"$out/result.json"
-extraction_table "$out/result.json" | sed "s/ *$//" | tee "$out/table.txt"
+extraction_table "$out/result.json" | tee "$out/table.txt"

@@ -46,7 +46,6 @@ poles_of drive even --every 2 --offset 0
 poles_of drive odd --every 2 --offset 1
 rm -r drive
 poles_of "$data/kitti_raw_0005" wrong --odometry-noise 0.02 --seed 7
-lasting="blind stuck slip jump clock moved half-gone snow"
 for fault in kidnap $lasting; do
   faults odd even 501 "$fault" --tail 100
   faults even odd 502 "$fault" --tail 100
@@ -54,11 +53,5 @@ done
 faults odd even 501 wrong-map --other-map wrong.polemap --tail 60
 faults even odd 502 wrong-map --other-map wrong.polemap --tail 60
 
-for fault in kidnap wrong-map $lasting; do
-  jq -s 'map(del(.failed))' ./*."$fault.json" | jq "{\"$fault\": .}"
-done | jq -s add >faults.json
-table faults.json 'to_entries[] | [.key] + (.value | [(map(.trials) | add), (map(.passed) | add), (map(.ok_before) | add),
-  (map(.degraded.max_s) | max), (map(.lost.max_s) | max), (map(.ok.max_m) | max), (map(.error_after_max_m) | max),
-  (map(.ok_wrong_max_m) | max), (map(.ok_beyond_5_sigma_max_s) | max)])' fault trials "as demanded" "ok before" \
-  "degraded max s:1" "lost max s:1" "ok max m:1" "error after max m:3" "ok wrong max m:1" "beyond 5 sigma max s:1" |
-  tee table.txt
+for fault in kidnap wrong-map $lasting; do fault_results "$fault" ./*."$fault.json"; done | jq -s add >faults.json
+fault_table faults.json | tee table.txt

@@ -58,7 +58,6 @@ faults() {
     --seed "$from" --json "$out/$name.json" "$@" >>"$out/$fault.txt"
 }
 
-lasting="blind stuck slip jump clock moved half-gone snow"
 kinds="kidnap wrong-map $lasting"
 for fault in $kinds none; do rm -f "$out"/*."$fault.json" "$out/$fault.txt"; done
 
@@ -85,24 +84,13 @@ for world in $worlds; do
   seed=$((seed + 1000))
 done
 
-collected() {
-  jq -s 'map(del(.failed))' "$@"
-}
 {
-  echo '{'
-  for fault in $kinds; do
-    echo "\"$fault\": $(collected "$out"/*."$fault".json),"
-  done
-  echo "\"healthy\": $(collected "$out"/healthy*.none.json),"
-  echo "\"half\": $(collected "$out"/half*.none.json)"
-  echo '}'
-} | jq . >"$out/faults.json"
+  for fault in $kinds; do fault_results "$fault" "$out"/*."$fault".json; done
+  fault_results healthy "$out"/healthy*.none.json
+  fault_results half "$out"/half*.none.json
+} | jq -s add >"$out/faults.json"
 {
-  table "$out/faults.json" 'del(.healthy, .half) | to_entries[] | [.key] + (.value | [(map(.trials) | add),
-    (map(.passed) | add), (map(.ok_before) | add), (map(.degraded.max_s) | max), (map(.lost.max_s) | max),
-    (map(.lost.max_m) | max), (map(.ok.max_m) | max), (map(.error_after_max_m) | max), (map(.ok_wrong_max_m) | max),
-    (map(.ok_beyond_5_sigma_max_s) | max)])' fault trials "as demanded" "ok before" "degraded max s:1" "lost max s:1" \
-    "lost max m:1" "ok max m:1" "error after max m:3" "ok wrong max m:1" "beyond 5 sigma max s:1"
+  fault_table "$out/faults.json"
   echo
   table "$out/faults.json" 'def mean(f): (map(f * .scans) | add) / (map(.scans) | add);
     {healthy, half} | to_entries[] | [.key] + (.value | [(map(.hours) | add), (map(.scans) | add),

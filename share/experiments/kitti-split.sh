@@ -30,16 +30,14 @@ find_tools jq
 # shellcheck disable=SC2086
 "$bin/pole-import" folder --quiet --input "$data" --output "$out/odd.rawlog" --every 2 --offset 1 \
   $odometry # options: several words
-"$bin/pole-map" build --quiet --config "$config" --input "$out/even.rawlog" --truth "$out/even.tum" \
-  --output "$out/map.polemap" --csv "$out/map.csv"
-"$bin/pole-localize" --quiet --config "$config" --input "$out/odd.rawlog" \
-  --map "$out/map.polemap" --truth "$out/odd.tum" --output "$out/runs" \
-  --particles 1000 --runs 5 --seed 1
+cp "$config" "$out/even.ini"
+cp "$config" "$out/odd.ini"
+map_drive "$out/even" "$out/map.polemap" --csv "$out/map.csv"
+localize_drive "$out/odd" "$out/map.polemap" "$out/runs" --particles 1000 --runs 5 --seed 1
 
 first=$(awk '!/^#/ { printf "%.9g,%.9g,%.9g", $2, $3,
   atan2(2 * ($8 * $7 + $5 * $6), 1 - 2 * ($6 * $6 + $7 * $7)) * 57.29577951308232; exit }' "$out/odd.tum")
-"$bin/pole-localize" --quiet --config "$config" --input "$out/odd.rawlog" --map "$out/map.polemap" \
-  --truth "$out/odd.tum" --output "$out/odometry" --start "$first,0,0" --particles 1000 --seed 1 \
+localize_drive "$out/odd" "$out/map.polemap" "$out/odometry" --start "$first,0,0" --particles 1000 --seed 1 \
   --set likelihood.gate_m=1e-9 --set search.recover=false --set odometry_monitor.enabled=false
 
 evaluate_runs "$out/odometry" "$out/odd.tum"
