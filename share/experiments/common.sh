@@ -114,7 +114,7 @@ table() (
           split(value, parts, ":")
           value = parts[1]
           digits[i] = parts[2]
-        } else if (value !~ /^-?[0-9][-+.0-9e]*$/) {
+        } else if (value !~ /^-?[0-9][-+.0-9eE]*$/) {
           if (value != "-") left[i] = "-"
         } else if (digits[i] != "") value = sprintf("%." digits[i] "f", value)
         cell[NR, i] = value

@@ -24,7 +24,7 @@ build() {
   here=$out/$1-$2
   # shellcheck disable=SC2086 # several words
   "$bin/pole-map" build --quiet --config "$here/street.ini" $4 --input "$here/poles.rawlog" \
-    --truth "$here/street.tum" --output "$here/$3.polemap"
+    --truth "$here/poles.tum" --output "$here/$3.polemap"
   score_map 0.5 "$here/poles.csv" "$here/$3.polemap" "$here/$3.json"
   jq -c --arg sensor "$1" --argjson world "$2" --arg rule "$3" \
     '{sensor: $sensor, world: $world, rule: $rule, precision, recall, f1, matches, map_poles, truth_poles}' \
@@ -45,12 +45,10 @@ for sensor in kitti hdl32e vlp16; do
     copy_settings "$top/config/$sensor.ini" "$here/street.ini" simulation.spacing_m=1.0 world.length_m=200 \
       "world.seed=$world"
     "$bin/pole-simulate" --quiet --config "$here/street.ini" --output "$here/scans"
-    "$bin/pole-import" folder --quiet --input "$here/scans" --output "$here/scans.rawlog"
-    "$bin/pole-extract" --quiet --config "$here/street.ini" --set scan_line.min_confidence=0.3 \
-      --input "$here/scans.rawlog" --output "$here/poles.rawlog"
-    mv "$here/scans.tum" "$here/street.tum"
+    copy_settings "$here/street.ini" "$here/poles.ini" scan_line.min_confidence=0.3
+    find_poles "$here/scans" "$here/poles" "$here/poles.ini"
     mv "$here/scans/poles_gt.csv" "$here/poles.csv"
-    rm -r "$here/scans" "$here/scans.rawlog"
+    rm -r "$here/scans"
     build $sensor "$world" run "$former"
     build $sensor "$world" confidences "$today"
   done
