@@ -24,12 +24,8 @@ settings=$out/views/settings.ini
 for confidence in 0.3 0.5 0.65; do
   "$bin/pole-map" build --quiet --config "$settings" --set map.min_confidence=$confidence --input "$out/poles.rawlog" \
     --truth "$out/scans.tum" --output "$out/map.polemap" 2>/dev/null
-  for metres in 20 40; do
-    "$bin/pole-eval" map --quiet --one-to-one --radius 1 --truth "$labels/truth_${metres}m.csv" \
-      --map "$out/map.polemap" --json "$out/$metres.json" >/dev/null
-  done
-  jq -n --argjson confidence $confidence --slurpfile near "$out/20.json" --slurpfile far "$out/40.json" \
-    '{min_confidence: $confidence, precision: $far[0].precision, recall: $near[0].recall}'
+  score_near 1 "$labels/truth_40m.csv" "$labels/truth_20m.csv" "$out/map.polemap" |
+    jq --argjson confidence $confidence '{min_confidence: $confidence, precision, recall}'
 done | jq -s . >"$out/result.json"
 rm -r "$out/views" "$out"/*.rawlog
 cat "$out/result.json"

@@ -30,30 +30,36 @@ def rigid_errors(found, right):
     return np.hypot(*(turned(a, np.arctan2(cross[0, 1] - cross[1, 0], np.trace(cross))) - b).T)
 
 
-def local_error(found, right, way, metres=60):
-    pieces = [(way >= begin) & (way <= begin + metres) for begin in np.arange(0, way[-1] - metres, 5)]
+def driven(places):
+    """The way to each place."""
+    return np.concatenate([[0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))])
+
+
+def local_error(found, right, metres=60, first=0):
+    """Mean rms of the pieces of this length, after the first metres; None if there are none."""
+    way = driven(right)
+    pieces = [(way >= begin) & (way <= begin + metres) for begin in np.arange(first, way[-1] - metres, 5)]
     errors = [np.sqrt((rigid_errors(found[p], right[p]) ** 2).mean()) for p in pieces]
     return float(np.mean(errors)) if errors else None
 
 
-def nees(errors, files, sigmas):
+def nees(errors, files, sigmas=(0, 0), first=1):
+    """Mean normalized squared error, from this row on."""
     table = np.vstack([np.loadtxt(file, delimiter=",", skiprows=1) for file in files])[:, 5:]
     extra = np.diag([sigmas[0], sigmas[0], np.radians(sigmas[1])]) ** 2
     values = []
-    for error, (xx, xy, xt, yy, yt, tt) in list(zip(errors, table))[1:]:
+    for error, (xx, xy, xt, yy, yt, tt) in list(zip(errors, table))[first:]:
         covariance = np.array([[xx, xy, xt], [xy, yy, yt], [xt, yt, tt]]) + 2 * extra
         values.append(error @ np.linalg.solve(covariance + 1e-12 * np.eye(3), error))
     return float(np.mean(values))
 
 
 def drive(truth, estimate):
-    """Positions and headings of the truth and of the estimate, and the way driven."""
+    """Positions and headings of the truth and of the estimate."""
     times, right, heading = read(truth)
     stamps, found, yaw = read(estimate)
     chosen = [np.abs(times - stamp).argmin() for stamp in stamps]
-    right, heading = right[chosen], heading[chosen]
-    way = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(right, axis=0).T))])
-    return right, heading, found, yaw, way
+    return right[chosen], heading[chosen], found, yaw
 
 
 def mean(values):
@@ -64,7 +70,7 @@ def mean(values):
 def main(truths, estimates, covariances, sigmas):
     drives = [drive(*files) for files in zip(truths.split(","), estimates.split(","))]
     right, heading, found, yaw = [np.concatenate([d[i] for d in drives]) for i in range(4)]
-    length = float(sum(d[4][-1] for d in drives))
+    length = float(sum(driven(d[0])[-1] for d in drives))
     errors = rigid_errors(found, right)
     # Both in the frame of the first pose.
     own = turned(right - right[0], -heading[0]) - turned(found - found[0], -yaw[0])
@@ -74,11 +80,12 @@ def main(truths, estimates, covariances, sigmas):
         "length": round(length, 1),
         "rms": round(float(np.sqrt((errors ** 2).mean())), 4),
         "max": round(float(errors.max()), 4),
-        "local": mean([local_error(found, right, way) for right, _, found, _, way in drives]),
+        "local": mean([local_error(found, right) for right, _, found, _ in drives]),
         "end_percent": round(100 * float(np.hypot(*own[-1])) / length, 3),
         "nees": round(nees(np.column_stack([own, turns]), covariances.split(","), sigmas), 2)}))
 
 
-if len(sys.argv) not in (4, 5):
-    sys.exit(__doc__)
-main(*sys.argv[1:4], [float(s) for s in sys.argv[4].split(",")] if len(sys.argv) == 5 else [0, 0])
+if __name__ == "__main__":
+    if len(sys.argv) not in (4, 5):
+        sys.exit(__doc__)
+    main(*sys.argv[1:4], [float(s) for s in sys.argv[4].split(",")] if len(sys.argv) == 5 else [0, 0])

@@ -19,8 +19,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 3 "$@"
 data=$(cd "$1" && pwd)
-mkdir -p "$2"
-out=$(cd "$2" && pwd)
+make_out "$2"
 kilometre=${3-}
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
 find_tools jq
@@ -28,31 +27,19 @@ work=$out/work
 rm -rf "$work"
 mkdir -p "$out/scans" "$work"
 
-# import NAME FOLDER OPTION...: $work/NAME.rawlog of poles, $work/NAME.tum. Uses $config.
+# import NAME FOLDER OPTION...: $work/NAME.rawlog of poles, NAME.tum, NAME.ini, which is $config.
 import() {
   name=$1
   folder=$2
   shift 2
-  "$bin/pole-import" folder --quiet --input "$folder" --output "$work/scans.rawlog" --odometry-noise 0.02 \
-    --seed 7 "$@"
-  "$bin/pole-extract" --quiet --config "$config" --input "$work/scans.rawlog" --output "$work/$name.rawlog"
-  mv "$work/scans.tum" "$work/$name.tum"
-}
-
-# build_map NAME: $work/NAME.polemap.
-build_map() {
-  "$bin/pole-map" build --quiet --config "$config" --input "$work/$1.rawlog" --truth "$work/$1.tum" \
-    --output "$work/$1.polemap"
+  cp "$config" "$work/$name.ini"
+  find_poles "$folder" "$work/$name" "$config" --odometry-noise 0.02 --seed 7 "$@"
 }
 
 # map_scores RADIUS WHOLE NEAR: precision by the poles WHOLE, recall by the poles NEAR, as JSON.
 map_scores() {
-  for truth in "$2" "$3"; do
-    "$bin/pole-eval" map --quiet --one-to-one --radius "$1" --truth "$truth" --map "$work/all.polemap" \
-      --json "$work/score.json" >/dev/null
-    cat "$work/score.json"
-  done | jq -s '{map: {precision: .[0].precision, recall: .[1].recall,
-    f1: (2 * .[0].precision * .[1].recall / (.[0].precision + .[1].recall))}}'
+  map_drive "$work/all" "$work/all.polemap"
+  score_near "$1" "$2" "$3" "$work/all.polemap" | jq '{map: .}'
 }
 
 # poses FOLDER OPTION...: errors of the odd scans in the map of the even ones, as JSON.
@@ -61,12 +48,11 @@ poses() {
   shift
   import even "$folder" --every 2 --offset 0 "$@"
   import odd "$folder" --every 2 --offset 1 "$@"
-  build_map even
+  map_drive "$work/even" "$work/even.polemap"
   rm -rf "$work/runs"
-  "$bin/pole-localize" --quiet --config "$config" --input "$work/odd.rawlog" --map "$work/even.polemap" \
-    --truth "$work/odd.tum" --output "$work/runs" --particles 1000 --runs 5 --seed 1
+  localize_drive "$work/odd" "$work/even.polemap" "$work/runs" --particles 1000 --runs 5 --seed 1
   evaluate_runs "$work/runs" "$work/odd.tum"
-  runs_json "$work/runs" | jq '{poses: (.mean | {pos_mean, lat_mean, lon_mean, ang_mean_deg, pos_max})}'
+  jq '{poses: (.mean | {pos_mean, lat_mean, lon_mean, ang_mean_deg, pos_max})}' "$work/runs/errors.json"
 }
 
 # simulated SENSOR SEED SCALE: SENSOR-SEED.json.
@@ -79,7 +65,6 @@ simulated() {
     mv "$scans.part" "$scans"
   }
   import all "$scans"
-  build_map all
   "$bin/pole-eval" detections --quiet --scans "$scans" --poles "$work/all.rawlog" \
     --json "$work/detections.json" --visible "$work/visible.csv" --min-scans 3 >/dev/null
   {
@@ -96,7 +81,6 @@ real() {
     if [ -n "$3" ]; then
       # shellcheck disable=SC2086 # several words
       import all "$2" $turning
-      build_map all
       map_scores 1 "$3" "$4"
     fi
     # shellcheck disable=SC2086
@@ -111,22 +95,18 @@ done
 
 second=$work/second
 link_scans "$data/kitti_raw_0005" "$second" 41 80
-turning="--turn clockwise --cut-deg 180 --stamp-turn 0.5"
+turning=$clockwise
 real kitti_raw_0005-second "$second" "" ""
 turning=
 real kitti_odom_00_long "$data/kitti_odom_00_long" "$data/published/kitti_truth_00.npz" \
   "$data/kitti_odom_00_long/truth_20m.csv"
 if [ -n "$kilometre" ]; then
-  turning="--turn clockwise --cut-deg 180 --stamp-turn 0.5"
+  turning=$clockwise
   real kilometre "$kilometre" "$data/kitti_odom_00_km/truth_40m.csv" "$data/kitti_odom_00_km/truth_20m.csv"
 fi
 rm -r "$work"
 
 jq -s . "$out"/*-[0-9]*.json "$out"/k*.json >"$out/result.json"
-jq -r '.[] | [.drive, .map.precision, .map.recall, .map.f1, .detections.nees_median, .poses.pos_mean,
-    .poses.ang_mean_deg, .poses.pos_max] | map(if type == "number" then . * 10000 | round / 10000 else . // "-" end)
-    | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN { format = "%-22s %9s %9s %9s %11s %9s %9s %9s\n"
-      printf format, "drive", "precision", "recall", "F1", "median NEES", "mean m", "mean deg", "worst m" }
-    { printf format, $1, $2, $3, $4, $5, $6, $7, $8 }' >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.drive, .map.precision, .map.recall, .map.f1, .detections.nees_median, .poses.pos_mean,
+  .poses.ang_mean_deg, .poses.pos_max]' drive precision:4 recall:4 F1:4 "median NEES:4" "mean m:4" "mean deg:4" \
+  "worst m:4" | tee "$out/table.txt"

@@ -51,6 +51,26 @@ find_tools() {
   done
 }
 
+# find_modules NAME...: the same for modules of Python.
+find_modules() {
+  for module in "$@"; do
+    /usr/bin/python3 -c "import $module" 2>/dev/null || die "$module is needed: install python3-$module"
+  done
+}
+
+# make_out FOLDER: makes the folder of the results, and sets $out. Lines of a run that was stopped are removed.
+make_out() {
+  mkdir -p "$1"
+  out=$(cd "$1" && pwd)
+  rm -f "$out/results"
+}
+
+# collect_results FILTER: $out/result.json from the lines of $out/results, as an array, by this filter of jq.
+collect_results() {
+  jq -s "$1" "$out/results" >"$out/result.json"
+  rm "$out/results"
+}
+
 # copy_settings FROM TO SECTION.KEY=VALUE...: copies an INI file, with these values changed or added. Works in a
 # shell of its own, as draw_drive does, so that its variables are not those of the script.
 copy_settings() (
@@ -74,6 +94,61 @@ copy_settings() (
 json_value() {
   sed -n "s/.*\"$2\"[ ]*:[ ]*\\([-+.0-9eE]*\\).*/\\1/p" "$1" | head -n 1
 }
+
+# table FILE FILTER COLUMN...: a table of the rows, arrays, that this filter of jq makes of the JSON file. A column is
+# NAME or NAME:DIGITS, the digits after the point. Columns of numbers stand at the right, others at the left.
+table() (
+  file=$1
+  filter=$2
+  shift 2
+  {
+    printf '%s\t' "$@"
+    echo
+    jq -r "$filter | @tsv" "$file"
+  } | awk -F '\t' '
+    NR == 1 { columns = NF - 1 }
+    {
+      for (i = 1; i <= columns; ++i) {
+        value = $i == "" ? "-" : $i
+        if (NR == 1) {
+          split(value, parts, ":")
+          value = parts[1]
+          digits[i] = parts[2]
+        } else if (value !~ /^-?[0-9][-+.0-9eE]*$/) {
+          if (value != "-") left[i] = "-"
+        } else if (digits[i] != "") value = sprintf("%." digits[i] "f", value)
+        cell[NR, i] = value
+        if (length(value) > width[i]) width[i] = length(value)
+      }
+    }
+    END {
+      for (row = 1; row <= NR; ++row) {
+        line = ""
+        for (i = 1; i <= columns; ++i) line = line sprintf("%" left[i] width[i] "s  ", cell[row, i])
+        sub(/ *$/, "", line)
+        print line
+      }
+    }'
+)
+
+# fault_results NAME FILE...: results of pole-eval faults, without the list of those that failed, under a name.
+fault_results() {
+  kind=$1
+  shift
+  jq -s --arg kind "$kind" '{($kind): map(del(.failed))}' "$@"
+}
+
+# fault_table FILE: faults.json, of all but healthy drives, a line for each fault.
+fault_table() {
+  table "$1" 'del(.healthy, .half) | to_entries[] | [.key] + (.value | [(map(.trials) | add), (map(.passed) | add),
+    (map(.ok_before) | add), (map(.degraded.max_s) | max), (map(.lost.max_s) | max), (map(.lost.max_m) | max),
+    (map(.ok.max_m) | max), (map(.error_after_max_m) | max), (map(.ok_wrong_max_m) | max),
+    (map(.ok_beyond_5_sigma_max_s) | max)])' fault trials "as demanded" "ok before" "degraded max s:1" "lost max s:1" \
+    "lost max m:1" "ok max m:1" "error after max m:3" "ok wrong max m:1" "beyond 5 sigma max s:1"
+}
+
+# Faults that last for a while, of pole-eval faults.
+lasting="blind stuck slip jump clock moved half-gone snow"
 
 # Odometry of simulated drives, unless a script says otherwise: wheel ticks and a gyroscope, with errors that
 # their covariances do not know (simulation.md).
@@ -111,64 +186,72 @@ simulate_day() (
     "world.length_m=$length" "world.seed=$seed" "world.day=$day" "$@"
   cd "$folder" || exit
   "$bin/pole-simulate" --quiet --config "day$day.ini" --output scans
-  "$bin/pole-import" folder --quiet --input scans --output scans.rawlog
-  "$bin/pole-extract" --quiet --config "day$day.ini" --input scans.rawlog --output "day$day.rawlog"
-  mv scans.tum "day$day.tum"
+  find_poles scans "day$day" "day$day.ini"
   mv scans/poles_gt.csv "poles_day$day.csv"
-  rm -r scans scans.rawlog
+  rm -r scans
 )
 
-error_keys="pos_mean pos_rmse lat_mean lon_mean ang_mean_deg ang_rmse_deg pos_max"
-
-# evaluate_runs FOLDER TRUTH: errors of every FOLDER/run_NN.tum, as run_NN.json and as the table
-# FOLDER/errors.txt, its last row the mean over the runs.
+# evaluate_runs FOLDER TRUTH: errors of every FOLDER/run_NN.tum as run_NN.json; errors.json has their mean, to four
+# digits, and all runs; errors.txt is the same as a table.
 evaluate_runs() {
-  rows=$1/errors.rows
-  : >"$rows"
   for estimate in "$1"/run_[0-9]*.tum; do
     [ -f "$estimate" ] || die "no runs in $1"
-    run=${estimate%.tum}
-    "$bin/pole-eval" trajectory --quiet --truth "$2" --estimate "$estimate" --json "$run.json" \
-      >/dev/null
-    printf '%s' "$(basename "$run")" >>"$rows"
-    for key in $error_keys; do printf ' %s' "$(json_value "$run.json" "$key")" >>"$rows"; done
-    echo >>"$rows"
+    "$bin/pole-eval" trajectory --quiet --truth "$2" --estimate "$estimate" --json "${estimate%.tum}.json" >/dev/null
   done
-  awk '
-    BEGIN {
-      format = "%-8s %10s %10s %9s %9s %10s %10s %9s\n"
-      printf format, "", "position", "position", "lateral", "longit.", "heading", "heading", "largest"
-      printf format, "run", "mean m", "RMSE m", "mean m", "mean m", "mean deg", "RMSE deg", "m"
-    }
-    function row(name, v) {
-      printf "%-8s %10.4f %10.4f %9.4f %9.4f %10.4f %10.4f %9.4f\n", \
-        name, v[2], v[3], v[4], v[5], v[6], v[7], v[8]
-    }
-    { for (i = 2; i <= NF; ++i) { v[i] = $i; sum[i] += $i } row($1, v) }
-    END { for (i = 2; i <= 8; ++i) v[i] = sum[i] / NR; row("mean", v) }
-  ' "$rows" >"$1/errors.txt"
-  rm "$rows"
+  jq -s '. as $runs | {mean: (.[0] | {pos_mean, pos_rmse, lat_mean, lon_mean, ang_mean_deg, ang_rmse_deg, pos_max}
+    | with_entries(.key as $key | .value = ($runs | map(.[$key]) | add / length * 10000 | round / 10000))), runs: .}' \
+    "$1"/run_[0-9]*.json >"$1/errors.json"
+  table "$1/errors.json" '(.runs | to_entries[]), {key: "mean", value: .mean} | [.key, (.value | .pos_mean, .pos_rmse,
+    .lat_mean, .lon_mean, .ang_mean_deg, .ang_rmse_deg, .pos_max)]' run "position m:4" "RMSE m:4" "lateral m:4" \
+    "longit. m:4" "heading deg:4" "RMSE deg:4" "largest m:4" >"$1/errors.txt"
 }
 
-# runs_json FOLDER: the errors of all runs and their mean, as JSON on standard output.
-runs_json() {
-  echo '{'
-  echo '  "mean": {'
-  awk -v keys="$error_keys" 'END {
-    n = split(keys, key, " ")
-    for (i = 1; i <= n; ++i) printf "    \"%s\": %s%s\n", key[i], $(i + 1), i < n ? "," : ""
-  }' "$1/errors.txt"
-  echo '  },'
-  echo '  "runs": ['
-  first=yes
-  for run in "$1"/run_[0-9]*.json; do
-    [ "$first" = yes ] || echo '    ,'
-    first=no
-    sed 's/^/    /' "$run"
-  done
-  echo '  ]'
-  echo '}'
+# find_poles FOLDER DRIVE CONFIG [OPTION...]: DRIVE.rawlog with the poles of these scans, and DRIVE.tum. The options
+# are those of pole-import.
+find_poles() (
+  folder=$1
+  drive=$2
+  config=$3
+  shift 3
+  "$bin/pole-import" folder --quiet --input "$folder" --output "$drive.scans.rawlog" "$@"
+  "$bin/pole-extract" --quiet --config "$config" --input "$drive.scans.rawlog" --output "$drive.rawlog"
+  mv "$drive.scans.tum" "$drive.tum"
+  rm "$drive.scans.rawlog"
+)
+
+# map_drive DRIVE MAP [OPTION...]: the map of DRIVE.rawlog at its true poses, with the settings DRIVE.ini.
+map_drive() (
+  drive=$1
+  map=$2
+  shift 2
+  "$bin/pole-map" build --quiet --config "$drive.ini" --input "$drive.rawlog" --truth "$drive.tum" --output "$map" "$@"
+)
+
+# localize_drive DRIVE MAP FOLDER [OPTION...]: runs of DRIVE.rawlog in the map, with the settings DRIVE.ini.
+localize_drive() (
+  drive=$1
+  map=$2
+  folder=$3
+  shift 3
+  "$bin/pole-localize" --quiet --config "$drive.ini" --input "$drive.rawlog" --map "$map" --truth "$drive.tum" \
+    --output "$folder" "$@"
+)
+
+# score_map RADIUS TRUTH MAP JSON: a map against true poles, one to one within this radius.
+score_map() {
+  "$bin/pole-eval" map --quiet --one-to-one --radius "$1" --truth "$2" --map "$3" --json "$4" >/dev/null
 }
+
+# score_near RADIUS TRUTH NEAR MAP: precision against all true poles, recall of those near the path, and F1, as JSON.
+score_near() {
+  score_map "$1" "$2" "$4" "$4.all.json"
+  score_map "$1" "$3" "$4" "$4.near.json"
+  jq -s '{precision: .[0].precision, recall: .[1].recall} | .f1 = 2 * .precision * .recall / (.precision + .recall)' \
+    "$4.all.json" "$4.near.json"
+}
+
+# LiDARs that turn clockwise, begin at the back, and are stamped when they face forward: options of pole-import.
+clockwise="--turn clockwise --cut-deg 180 --stamp-turn 0.5"
 
 # link_scans DRIVE FOLDER FIRST LAST: the scans FIRST to LAST (from 1) of a drive as a folder of their own, as links.
 link_scans() (
@@ -184,6 +267,5 @@ kilometre_arguments() {
   check_arguments 3 3 "$@"
   labels=$(cd "$1/kitti_odom_00_km" && pwd)
   kilometre=$(cd "$2" && pwd)
-  mkdir -p "$3"
-  out=$(cd "$3" && pwd)
+  make_out "$3"
 }

@@ -12,12 +12,11 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 3 "$@"
-out=$1
 first=${2:-701}
 worlds=${3:-30}
 find_programs pole-simulate pole-map pole-localize pole-eval
 find_tools jq
-mkdir -p "$out"
+make_out "$1"
 
 # drive NAME WORLD DAY REVERSE: NAME.ini .rawlog .tum
 drive() {
@@ -26,50 +25,43 @@ drive() {
     "simulation.reverse=$4" "simulation.drive_seed=$2" world.length_m=600
 }
 
-# localize WORLD DIRECTION: OUT/WORLD-DIRECTION/run_00_cov.csv
-localize() {
-  "$bin/pole-localize" --quiet --config "$out/$1-$2.ini" --input "$out/$1-$2.rawlog" \
-    --map "$out/$1.polemap" --truth "$out/$1-$2.tum" --output "$out/$1-$2" --seed "$1"
-}
-
-forward=
-reverse=
-forward_truth=
-reverse_truth=
-forward_health=
-reverse_health=
-world=$first
-while [ "$world" -lt $((first + worlds)) ]; do
+worlds=$(seq "$first" $((first + worlds - 1)))
+for world in $worlds; do
   drive "$world-map" "$world" 0 false
   drive "$world-forward" "$world" 1 false
   drive "$world-reverse" "$world" 1 true
-  "$bin/pole-map" build --quiet --config "$out/$world-map.ini" --input "$out/$world-map.rawlog" \
-    --truth "$out/$world-map.tum" --output "$out/$world.polemap"
-  localize "$world" forward
-  localize "$world" reverse
-  forward="$forward $out/$world-forward/run_00_cov.csv"
-  reverse="$reverse $out/$world-reverse/run_00_cov.csv"
-  forward_truth="$forward_truth $out/$world-forward.tum"
-  reverse_truth="$reverse_truth $out/$world-reverse.tum"
-  forward_health="$forward_health $out/$world-forward/run_00_health.csv"
-  reverse_health="$reverse_health $out/$world-reverse/run_00_health.csv"
-  world=$((world + 1))
+  map_drive "$out/$world-map" "$out/$world.polemap"
+  for direction in forward reverse; do
+    localize_drive "$out/$world-$direction" "$out/$world.polemap" "$out/$world-$direction" --seed "$world"
+  done
 done
 
-# score NAME TRUTH... --cov CSV...: the last line of the table, and NAME.json
+# files ENDING DIRECTION...: those of all worlds.
+files() {
+  ending=$1
+  shift
+  for direction in "$@"; do
+    for world in $worlds; do echo "$out/$world-$direction$ending"; done
+  done
+}
+
+# score NAME DIRECTIONS [OPTION...]: the last line of the table, and NAME.json
+# shellcheck disable=SC2046,SC2086 # lists of words
 score() {
   name=$1
-  shift
-  "$bin/pole-eval" consistency --json "$out/$name.json" --truth "$@" >"$out/$name.txt"
+  directions=$2
+  shift 2
+  "$bin/pole-eval" consistency --json "$out/$name.json" --truth $(files .tum $directions) \
+    --cov $(files /run_00_cov.csv $directions) "$@" >"$out/$name.txt"
   printf '%-8s ' "$name"
   tail -n 1 "$out/$name.txt"
 }
-# shellcheck disable=SC2086 # word splitting wanted: lists of files
 {
-  score forward $forward_truth --cov $forward
-  score reverse $reverse_truth --cov $reverse
-  score all $forward_truth $reverse_truth --cov $forward $reverse
-  score all_ok $forward_truth $reverse_truth --cov $forward $reverse --health $forward_health $reverse_health
+  score forward forward
+  score reverse reverse
+  score all "forward reverse"
+  # shellcheck disable=SC2046 # a list of files
+  score all_ok "forward reverse" --health $(files /run_00_health.csv forward reverse)
 } >"$out/table.txt"
 sed -n 2p "$out/all.txt"
 jq -s '{forward: .[0], reverse: .[1], all: .[2], all_ok: .[3]}' "$out/forward.json" "$out/reverse.json" "$out/all.json" \

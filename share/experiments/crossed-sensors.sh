@@ -16,8 +16,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/extraction-parts.sh"
 
 check_arguments 1 any "$@"
-mkdir -p "$1"
-out=$(cd "$1" && pwd)
+make_out "$1"
 shift
 kilometre=""
 if [ -d "${1-}" ]; then
@@ -30,10 +29,8 @@ find_tools jq
 
 # score STREET MAP LIDAR: localizes LIDAR/day1 in the map of MAP/day0; adds a line to $out/results.
 score() {
-  "$bin/pole-localize" --quiet --config "$here/$3/day1.ini" --input "$here/$3/day1.rawlog" \
-    --map "$here/$2/map.polemap" --truth "$here/$3/day1.tum" --output "$here/runs" \
-    --runs 5 --seed 1
-  evaluate_runs "$here/runs" "$here/$3/day1.tum" >/dev/null
+  localize_drive "$here/$3/day1" "$here/$2/map.polemap" "$here/runs" --runs 5 --seed 1
+  evaluate_runs "$here/runs" "$here/$3/day1.tum"
   jq -s --arg street "$1" --arg map "$2" --arg lidar "$3" '{street: $street, map: $map, lidar: $lidar,
     pos_mean: (map(.pos_mean) | add / length), ang_mean_deg: (map(.ang_mean_deg) | add / length),
     pos_max: (map(.pos_max) | max)}' "$here"/runs/run_0?.json >>"$out/results"
@@ -44,10 +41,7 @@ score() {
 crossed() {
   street=$1
   shift
-  for lidar in "$@"; do
-    "$bin/pole-map" build --quiet --config "$here/$lidar/day0.ini" --input "$here/$lidar/day0.rawlog" \
-      --truth "$here/$lidar/day0.tum" --output "$here/$lidar/map.polemap"
-  done
+  for lidar in "$@"; do map_drive "$here/$lidar/day0" "$here/$lidar/map.polemap"; done
   for map in "$@"; do
     for lidar in "$@"; do score "$street" "$map" "$lidar"; done
   done
@@ -60,16 +54,13 @@ thinned() {
   "$top/share/experiments/thin_rings.py" "$kilometre" "$lidar/scans" "$1" "$top/config/kitti.ini"
   for day in 0 1; do
     cp "$lidar/scans/settings.ini" "$lidar/day$day.ini"
-    "$bin/pole-import" folder --quiet --input "$lidar/scans" --output "$lidar/all.rawlog" --every 2 --offset $day \
-      --odometry-noise 0.02 --seed 7 --turn clockwise --cut-deg 180 --stamp-turn 0.5
-    "$bin/pole-extract" --quiet --config "$lidar/day$day.ini" --input "$lidar/all.rawlog" \
-      --output "$lidar/day$day.rawlog"
-    mv "$lidar/all.tum" "$lidar/day$day.tum"
+    # shellcheck disable=SC2086 # several words
+    find_poles "$lidar/scans" "$lidar/day$day" "$lidar/day$day.ini" --every 2 --offset $day --odometry-noise 0.02 \
+      --seed 7 $clockwise
   done
-  rm -r "$lidar/scans" "$lidar/all.rawlog"
+  rm -r "$lidar/scans"
 }
 
-: >"$out/results"
 if [ -n "$kilometre" ]; then
   here=$out/kilometre
   for every in 1 2 4; do thinned $every; done
@@ -83,9 +74,6 @@ for seed in "$@"; do
   crossed "$seed" hdl64e os1_64 hdl32e vlp16
 done
 
-jq -s . "$out/results" >"$out/result.json"
-rm "$out/results"
-jq -r '.[] | [.street, .map, .lidar, .pos_mean, .ang_mean_deg, .pos_max] | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN { printf "%-10s %-10s %-10s %8s %8s %8s\n", "street", "map", "lidar", "mean m", "mean deg", "worst m" }
-    { printf "%-10s %-10s %-10s %8.4f %8.4f %8.4f\n", $1, $2, $3, $4, $5, $6 }' >"$out/table.txt"
-cat "$out/table.txt"
+collect_results .
+table "$out/result.json" '.[] | [.street, .map, .lidar, .pos_mean, .ang_mean_deg, .pos_max]' \
+  street map lidar "mean m:4" "mean deg:4" "worst m:4" | tee "$out/table.txt"

@@ -13,12 +13,11 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 any "$@"
-out=$1
+make_out "$1"
 shift
 [ $# -gt 0 ] || set -- 501 502 503
 find_tools jq
 find_programs pole-simulate pole-map pole-localize pole-eval
-mkdir -p "$out"
 
 # drive NAME SEED DAY MODEL: simulates NAME.rawlog, cast when MODEL is empty.
 drive() {
@@ -36,19 +35,14 @@ judge() {
     "$bin/pole-eval" repeatability --quiet --poles "$out/$name.rawlog" --truth "$out/$name.tum" \
       --json "$out/$name-repeated.json"
   done
-  "$bin/pole-map" build --quiet --config "$out/$1-$2-0.ini" --input "$out/$1-$2-0.rawlog" \
-    --truth "$out/$1-$2-0.tum" --output "$out/$1-$2.polemap"
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$out/$1-$2-0_poles_gt.csv" \
-    --map "$out/$1-$2.polemap" --json "$out/$1-$2-map.json" >/dev/null
-  "$bin/pole-localize" --quiet --config "$out/$1-$2-1.ini" --input "$out/$1-$2-1.rawlog" \
-    --map "$out/$1-$2.polemap" --truth "$out/$1-$2-1.tum" --output "$out/$1-$2-runs" \
-    --particles 1000 --runs 3 --seed 1
+  map_drive "$out/$1-$2-0" "$out/$1-$2.polemap"
+  score_map 0.5 "$out/$1-$2-0_poles_gt.csv" "$out/$1-$2.polemap" "$out/$1-$2-map.json"
+  localize_drive "$out/$1-$2-1" "$out/$1-$2.polemap" "$out/$1-$2-runs" --particles 1000 --runs 3 --seed 1
   evaluate_runs "$out/$1-$2-runs" "$out/$1-$2-1.tum"
-  runs_json "$out/$1-$2-runs" >"$out/$1-$2-runs.json"
   jq -n --arg kind "$1" --arg world "$2" \
     --slurpfile sight "$out/$1-$2-0.json" --slurpfile sight1 "$out/$1-$2-1.json" \
     --slurpfile again "$out/$1-$2-0-repeated.json" --slurpfile again1 "$out/$1-$2-1-repeated.json" \
-    --slurpfile map "$out/$1-$2-map.json" --slurpfile runs "$out/$1-$2-runs.json" '
+    --slurpfile map "$out/$1-$2-map.json" --slurpfile runs "$out/$1-$2-runs/errors.json" '
     ($sight[0] | keys | map(select(. != "range_edges_m"))) as $keys
     | {kind: $kind, world: ($world | tonumber)}
     + ($keys | map({(.): (if . == "recall" then
@@ -78,22 +72,16 @@ for seed in "$@"; do
   judge drawn "$seed"
 done | jq -s . >"$out/result.json"
 
-jq -r '
-  def cell: if . == null then "-" else (. * 1000 | round / 1000 | tostring) end;
+# shellcheck disable=SC2016,SC2046 # names of jq; a list of words
+table "$out/result.json" 'def cell: if . == null then "-" else (. * 1000 | round / 1000 | tostring) end;
   [.[] | select(.kind == "cast")] as $cast | [.[] | select(.kind == "drawn")] as $drawn
   | def row(name; get): [name] + ([$cast, $drawn] | transpose | map(map(get | cell) | join(" / "))
       ) + [([$cast, $drawn] | map(map(get) | add / length | cell) | join(" / "))];
-  ([["cast / drawn"] + ($cast | map("world \(.world)")) + ["mean"]]
-   + [row("detections per scan"; .per_scan), row("false per scan"; .false_per_scan),
-      row("of lasting objects"; .lasting_false_per_scan)]
-   + [range(0; $cast[0].recall | length) as $i
-      | row("found, \($i * 5) to \($i * 5 + 5) m"; .recall[$i])]
-   + [row("centre median, m"; .centre_median_m), row("centre 90 %, m"; .centre_p90_m),
-      row("NEES mean"; .nees_mean), row("NEES median"; .nees_median),
-      row("confidence"; .confidence), row("found again"; .repeated),
-      row("way found, m"; .found_run_m), row("way missed, m"; .missed_run_m),
-      row("map precision"; .map_precision), row("map recall"; .map_recall),
-      row("map F1"; .map_f1), row("position error, m"; .pos_mean),
-      row("heading error, deg"; .ang_mean_deg)])[] | "| " + join(" | ") + " |"
-' "$out/result.json" | sed '1{p;s/[^|]/-/g;s/^|-*|/|---|/}' >"$out/table.txt"
-cat "$out/table.txt"
+  row("detections per scan"; .per_scan), row("false per scan"; .false_per_scan),
+  row("of lasting objects"; .lasting_false_per_scan),
+  (range(0; $cast[0].recall | length) as $i | row("found, \($i * 5) to \($i * 5 + 5) m"; .recall[$i])),
+  row("centre median, m"; .centre_median_m), row("centre 90 %, m"; .centre_p90_m), row("NEES mean"; .nees_mean),
+  row("NEES median"; .nees_median), row("confidence"; .confidence), row("found again"; .repeated),
+  row("way found, m"; .found_run_m), row("way missed, m"; .missed_run_m), row("map precision"; .map_precision),
+  row("map recall"; .map_recall), row("map F1"; .map_f1), row("position error, m"; .pos_mean),
+  row("heading error, deg"; .ang_mean_deg)' "cast / drawn" $(printf 'world-%s ' "$@") mean | tee "$out/table.txt"

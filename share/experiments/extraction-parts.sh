@@ -65,8 +65,7 @@ real_drive() {
 # map_score METHOD TRUTH METRIC: precision or recall of the world's map; 0 without a map.
 map_score() {
   if [ -f "$work/$1.polemap" ]; then
-    "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$2" \
-      --map "$work/$1.polemap" --json "$work/map.json"
+    score_map 0.5 "$2" "$work/$1.polemap" "$work/map.json"
     json_value "$work/map.json" "$3"
   else
     echo 0
@@ -139,49 +138,28 @@ summarize() {
     {quick: ($quick == "yes"), length_m: $length, spacing_m: $spacing} + reduce .[] as $part ({}; . * $part)'
 }
 
-# table FILE: the figures as a table.
-table() {
-  jq -r '
-    def pad(n): tostring | if length < n then . + " " * (n - length) else . end;
-    def lead(n): tostring | if length < n then " " * (n - length) + . else . end;
-    def round_to(d): if . == null then "-" else
-      ((. * pow(10; d) | round / pow(10; d)) + 0 | tostring) as $t
-      | ($t | split(".") | .[1] // "") as $f | if d == 0 then $t
-        else ($t | split(".")[0]) + "." + $f + "0" * (d - ($f | length)) end end;
-    def methods: . as $sensor | ["scan_line", "mended", "paper"] | map(select($sensor[.]));
-    def title: {scan_line: "scan_line", mended: "paper mended", paper: "paper"}[.];
-    def row(name; key; scale; digits): name as $name | . as $sensor
-      | "  " + ($name | pad(30)) + ([methods[] as $m
-        | [("mean", "min", "max") as $w | $sensor[$m][$w][key]
-           | if . == null then . else . * scale end | round_to(digits) | lead(8)] | add]
-        | join("   "));
-    (if .quick then "QUICK RUN: not to judge by\n" else "" end),
-    (if .real then
-      ("Real drive" | pad(32)) + ([.real | methods[] | title | lead(14)] | add),
-      (.real as $r | [
-        ["poles per scan", "repeatability", "per_scan", 2],
-        ["found again in the next scans", "repeatability", "share", 3],
-        ["found again when turned", "rotation", "share", 3],
-        ["turned poles that were there", "rotation", "back_share", 3]][] as $k
-      | "  " + ($k[0] | pad(30)) + ([($r | methods[]) as $m
-        | $r[$m][$k[1]][$k[2]] | round_to($k[3]) | lead(14)] | add)) else empty end),
-    (if .pair then "", "Pair of real scans: \(.pair.poles[0]) and \(.pair.poles[1]) poles, "
-      + "\(.pair.matched) of them in both, apart by "
-      + "\(.pair.median_m * 100 | round_to(1)) cm (median), \(.pair.p90_m * 100 | round_to(1)) cm (90 %), "
-      + "\(.pair.max_m * 100 | round_to(1)) cm (most); \(.pair.within_10cm) within 10 cm" else empty end),
-    (.simulated | to_entries[] | .key as $name | .value
-      | "", "Simulated " + $name + ", worlds " + ([.scan_line.worlds[].seed | tostring] | join(" ")),
-        ("  mean, least and most of" | pad(32)) + ([methods[] | title | lead(24) | pad(27)] | add),
-        row("precision"; "precision"; 1; 3), row("recall of visible poles"; "recall"; 1; 3),
-        row("centre error, median (cm)"; "centre_median_m"; 100; 2),
-        row("centre error, mean (cm)"; "centre_mean_m"; 100; 2),
-        row("centre error, 90 % (cm)"; "centre_p90_m"; 100; 2),
-        row("bias along the ray (cm)"; "bias_along_m"; 100; 2),
-        row("bias across (cm)"; "bias_across_m"; 100; 2),
-        row("radius error, median (cm)"; "radius_abs_median_m"; 100; 2),
-        row("squared error, mean (2)"; "nees_mean"; 1; 2),
-        row("squared error, median (1.39)"; "nees_median"; 1; 2),
-        row("auc"; "auc"; 1; 3), row("auc all"; "auc_all"; 1; 3),
-        row("map precision"; "map_precision"; 1; 3), row("map recall"; "map_recall"; 1; 3),
-        row("map F1"; "map_f1"; 1; 3))' "$1"
+# extraction_table FILE: the figures as tables.
+# shellcheck disable=SC2016,SC2046 # names of jq; lists of words
+extraction_table() {
+  jq -r 'select(.quick) | "QUICK RUN: not to judge by"' "$1"
+  [ ! -f "$out/real_paper.json" ] ||
+    table "$1" '.real as $methods | ["poles per scan", "repeatability", "per_scan"], ["found again in the next scans",
+      "repeatability", "share"], ["found again when turned", "rotation", "share"], ["turned poles that were there",
+      "rotation", "back_share"] | . as [$name, $kind, $key] | [$name, ($methods | .scan_line, .mended, .paper
+      | .[$kind][$key])]' "real drive" scan_line:3 "paper mended:3" paper:3
+  jq -r 'def cm: . * 1000 | round / 10; .pair // empty | "", "Pair of real scans: \(.poles[0]) and \(.poles[1]) poles, "
+    + "\(.matched) of them in both, apart by \(.median_m | cm) cm (median), \(.p90_m | cm) cm (90 %), "
+    + "\(.max_m | cm) cm (most); \(.within_10cm) within 10 cm"' "$1"
+  for sensor in hdl64e hdl32e os1_64 vlp16; do
+    printf '\nSimulated %s, worlds %s\n' $sensor "$(jq ".simulated.$sensor.scan_line.worlds[].seed" "$1" | paste -s -d ' ')"
+    table "$1" ".simulated.$sensor"' as $methods | ["precision", "precision", 1], ["recall of visible poles", "recall", 1],
+      ["centre error, median (cm)", "centre_median_m", 100], ["centre error, mean (cm)", "centre_mean_m", 100],
+      ["centre error, 90 % (cm)", "centre_p90_m", 100], ["bias along the ray (cm)", "bias_along_m", 100],
+      ["bias across (cm)", "bias_across_m", 100], ["radius error, median (cm)", "radius_abs_median_m", 100],
+      ["squared error, mean (2)", "nees_mean", 1], ["squared error, median (1.39)", "nees_median", 1], ["auc", "auc", 1],
+      ["auc all", "auc_all", 1], ["map precision", "map_precision", 1], ["map recall", "map_recall", 1],
+      ["map F1", "map_f1", 1] | . as [$name, $key, $scale] | [$name, ($methods | .scan_line, .mended, .paper | values
+      | (.mean, .min, .max)[$key] | if . then . * $scale else . end)]' mean \
+      $(for method in $(methods $sensor); do echo "$method:3 least:3 most:3"; done)
+  done
 }

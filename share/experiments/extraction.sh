@@ -32,7 +32,7 @@ quick=no
 }
 check_arguments 2 any "$@"
 data=$1
-out=$2
+make_out "$2"
 shift 2
 length=160
 spacing=0.8
@@ -43,7 +43,6 @@ if [ $# = 0 ]; then
 fi
 find_tools jq
 find_programs pole-import pole-extract pole-map pole-eval pole-simulate
-mkdir -p "$out"
 rm -f "$out"/*.json
 
 paper_settings "$out/paper"
@@ -54,5 +53,4 @@ for sensor in hdl64e hdl32e os1_64 vlp16; do
 done
 
 summarize "$quick" >"$out/result.json"
-table "$out/result.json" | sed "s/ *$//" >"$out/table.txt"
-cat "$out/table.txt"
+extraction_table "$out/result.json" | tee "$out/table.txt"

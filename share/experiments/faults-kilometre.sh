@@ -18,21 +18,17 @@ data=$(cd "$1" && pwd)
 find_programs pole-import pole-extract pole-map pole-eval
 find_tools jq
 config=$top/config/kitti.ini
-clockwise="--turn clockwise --cut-deg 180 --stamp-turn 0.5"
 cd "$out"
 rm -f ./*.json ./*.txt
 
-# poles_of FOLDER NAME [OPTION...]: NAME.rawlog with the poles, NAME.tum.
+# poles_of FOLDER NAME [OPTION...]: NAME.rawlog with the poles, NAME.tum, NAME.polemap.
 poles_of() {
   folder=$1 name=$2
   shift 2
   # shellcheck disable=SC2086 # several words
-  "$bin/pole-import" folder --quiet --input "$folder" --output "$name.scans.rawlog" $clockwise "$@"
-  mv "$name.scans.tum" "$name.tum"
-  "$bin/pole-extract" --quiet --config "$config" --input "$name.scans.rawlog" --output "$name.rawlog"
-  rm "$name.scans.rawlog"
-  "$bin/pole-map" build --quiet --config "$config" --input "$name.rawlog" --truth "$name.tum" \
-    --output "$name.polemap" >/dev/null
+  find_poles "$folder" "$name" "$config" $clockwise "$@"
+  cp "$config" "$name.ini"
+  map_drive "$name" "$name.polemap"
 }
 
 # faults SCANS MAP SEED FAULT [OPTION...]
@@ -50,7 +46,6 @@ poles_of drive even --every 2 --offset 0
 poles_of drive odd --every 2 --offset 1
 rm -r drive
 poles_of "$data/kitti_raw_0005" wrong --odometry-noise 0.02 --seed 7
-lasting="blind stuck slip jump clock moved half-gone snow"
 for fault in kidnap $lasting; do
   faults odd even 501 "$fault" --tail 100
   faults even odd 502 "$fault" --tail 100
@@ -58,13 +53,5 @@ done
 faults odd even 501 wrong-map --other-map wrong.polemap --tail 60
 faults even odd 502 wrong-map --other-map wrong.polemap --tail 60
 
-for fault in kidnap wrong-map $lasting; do
-  jq -s 'map(del(.failed))' ./*."$fault.json" | jq "{\"$fault\": .}"
-done | jq -s add >faults.json
-jq -r '["fault", "trials", "as demanded", "ok before", "degraded max s", "lost max s", "ok max m", "error after max m",
-  "ok wrong max m", "beyond 5 sigma max s"],
-  (to_entries[] | .value as $v | [.key, ($v | map(.trials) | add), ($v | map(.passed) | add), ($v | map(.ok_before) | add),
-  ($v | map(.degraded.max_s) | max), ($v | map(.lost.max_s) | max), ($v | map(.ok.max_m) | max),
-  ($v | map(.error_after_max_m) | max), ($v | map(.ok_wrong_max_m) | max),
-  ($v | map(.ok_beyond_5_sigma_max_s) | max)]) | @tsv' faults.json | column -t -s "$(printf '\t')" >table.txt
-cat table.txt
+for fault in kidnap wrong-map $lasting; do fault_results "$fault" ./*."$fault.json"; done | jq -s add >faults.json
+fault_table faults.json | tee table.txt

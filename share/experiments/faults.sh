@@ -26,14 +26,12 @@ if [ "${1:-}" = --quick ]; then
   shift
 fi
 check_arguments 1 2 "$@"
-out=$1
+make_out "$1"
 track=${2:-${POLEMCL_DATA:+$POLEMCL_DATA/tracks/kaist01.txt.gz}}
 road=world.length_m=3000
 [ -z "$track" ] || road=world.track=$track
 find_programs pole-simulate pole-map pole-eval
 find_tools jq
-mkdir -p "$out"
-: >"$out/table.txt"
 
 # drive NAME WORLD DAY DRIVE [SECTION.KEY=VALUE...]: NAME.rawlog, NAME.tum, with the settings NAME.ini.
 drive() {
@@ -46,8 +44,7 @@ drive() {
 # map_of WORLD: the map of day 0, mapWORLD.polemap.
 map_of() {
   drive "map$1" "$1" 0 1
-  "$bin/pole-map" build --quiet --config "$out/map$1.ini" --input "$out/map$1.rawlog" \
-    --truth "$out/map$1.tum" --output "$out/map$1.polemap"
+  map_drive "$out/map$1" "$out/map$1.polemap"
 }
 
 # faults WORLD DRIVE FAULT TRIALS SEED OPTIONS...: appends to FAULT.txt, writes FAULT_WORLD_DRIVE.json.
@@ -61,7 +58,6 @@ faults() {
     --seed "$from" --json "$out/$name.json" "$@" >>"$out/$fault.txt"
 }
 
-lasting="blind stuck slip jump clock moved half-gone snow"
 kinds="kidnap wrong-map $lasting"
 for fault in $kinds none; do rm -f "$out"/*."$fault.json" "$out/$fault.txt"; done
 
@@ -88,43 +84,18 @@ for world in $worlds; do
   seed=$((seed + 1000))
 done
 
-# One line for each fault over all worlds, and faults.json.
-row() {
-  jq -rs --arg name "$1" '[$name, (map(.trials) | add), (map(.passed) | add),
-    (map(.ok_before) | add), (map(.degraded.max_s) | max), (map(.lost.max_s) | max),
-    (map(.lost.max_m) | max), (map(.ok.max_m) | max), (map(.error_after_max_m) | max),
-    (map(.ok_wrong_max_m) | max), (map(.ok_beyond_5_sigma_max_s) | max)] | @tsv' \
-    "$out"/*."$1".json
-}
-healthy_row() {
-  jq -rs --arg name "$1" '(map(.scans) | add) as $scans | [$name, (map(.hours) | add),
-    $scans, (map(.lost_times) | add), (map(.degraded_times) | add),
-    (map(.ok_share * .scans) | add) / $scans, (map(.longest_not_ok_s) | max),
-    (map(.ok_with_wrong_pose) | add), (map(.error_mean_m * .scans) | add) / $scans,
-    (map(.error_max_m) | max), (map(.ok_beyond_5_sigma_max_s) | max)] | @tsv' "$out/$1"*.none.json
-}
 {
-  echo "fault      trials  as demanded  ok before  degraded max s  lost max s  lost max m  ok max m  \
-error after max m  ok wrong max m  beyond 5 sigma max s"
-  for fault in $kinds; do row "$fault"; done |
-    awk -F '\t' '{ printf "%-10s %6d %12d %10d %15.1f %11.1f %11.1f %9.1f %18.3f %15.1f %21.1f\n", \
-      $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11 }'
+  for fault in $kinds; do fault_results "$fault" "$out"/*."$fault".json; done
+  fault_results healthy "$out"/healthy*.none.json
+  fault_results half "$out"/half*.none.json
+} | jq -s add >"$out/faults.json"
+{
+  fault_table "$out/faults.json"
   echo
-  echo "drives     hours   scans  lost  degraded  ok share  longest s  wrong ok  mean m  max m  beyond 5 sigma max s"
-  for kind in healthy half; do healthy_row "$kind"; done |
-    awk -F '\t' '{ printf "%-10s %5.2f %7d %5d %9d %9.5f %10.1f %9d %7.4f %6.3f %21.1f\n", \
-      $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11 }'
-} >"$out/table.txt"
-collected() {
-  jq -s 'map(del(.failed))' "$@"
-}
-{
-  echo '{'
-  for fault in $kinds; do
-    echo "\"$fault\": $(collected "$out"/*."$fault".json),"
-  done
-  echo "\"healthy\": $(collected "$out"/healthy*.none.json),"
-  echo "\"half\": $(collected "$out"/half*.none.json)"
-  echo '}'
-} | jq . >"$out/faults.json"
-cat "$out/table.txt"
+  table "$out/faults.json" 'def mean(f): (map(f * .scans) | add) / (map(.scans) | add);
+    {healthy, half} | to_entries[] | [.key] + (.value | [(map(.hours) | add), (map(.scans) | add),
+    (map(.lost_times) | add), (map(.degraded_times) | add), mean(.ok_share), (map(.longest_not_ok_s) | max),
+    (map(.ok_with_wrong_pose) | add), mean(.error_mean_m), (map(.error_max_m) | max),
+    (map(.ok_beyond_5_sigma_max_s) | max)])' drives hours:2 scans lost degraded "ok share:5" "longest s:1" "wrong ok" \
+    "mean m:4" "max m:3" "beyond 5 sigma max s:1"
+} | tee "$out/table.txt"

@@ -14,7 +14,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 any "$@"
 tracks=$1
-out=$2
+make_out "$2"
 shift 2
 cities="601:kaist01 602:kaist02 603:kaist01 604:kaist02" trials=50 density=
 for option in "$@"; do
@@ -26,7 +26,6 @@ for option in "$@"; do
 done
 find_programs pole-simulate pole-map pole-eval
 find_tools jq
-mkdir -p "$out"
 
 # drive CITY DAY TRACK: OUT/CITY-DAY.ini .rawlog .tum
 drive() {
@@ -35,28 +34,22 @@ drive() {
     "world.track=$tracks/$3.txt.gz" $density
 }
 
-printf '%-6s %9s %6s %6s %6s %10s %9s %9s %11s %9s\n' city map_poles starts right wrong undecided \
-  'metres' '95 %' 'error m' 'query ms'
-files=
 for city in $cities; do
   seed=${city%%:*}
   for day in 0 1; do drive "$seed" "$day" "${city#*:}"; done
-  "$bin/pole-map" build --quiet --config "$out/$seed-0.ini" --input "$out/$seed-0.rawlog" \
-    --truth "$out/$seed-0.tum" --output "$out/$seed.polemap"
+  map_drive "$out/$seed-0" "$out/$seed.polemap"
   "$bin/pole-eval" global --quiet --config "$out/$seed-1.ini" --map "$out/$seed.polemap" \
     --input "$out/$seed-1.rawlog" --truth "$out/$seed-1.tum" --trials "$trials" --seed "$seed" \
     --json "$out/$seed.json"
-  jq -s '.[0] + .[1]' "$out/$seed.json" "$out/${seed}_timings.json" >"$out/$seed.all"
-  files="$files $out/$seed.all"
-  jq -r --arg city "$seed" '[$city, .map_poles, .trials, .right, .wrong, .undecided, .metres_median,
-    .metres_p95, .error_median_m, .query_max_ms] | @tsv' "$out/$seed.all" |
-    awk '{ printf "%-6s %9d %6d %6d %6d %10d %9.1f %9.1f %11.3f %9.1f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }'
+  jq -s add "$out/$seed.json" "$out/${seed}_timings.json" >>"$out/results"
 done
-# shellcheck disable=SC2086 # word splitting wanted: a list of files
-jq -s '{cities: ., starts: (map(.trials) | add), right: (map(.right) | add),
+collect_results '{cities: ., starts: (map(.trials) | add), right: (map(.right) | add),
   wrong: (map(.wrong) | add), undecided: (map(.undecided) | add), ok_wrong: (map(.ok_wrong) | add),
   query_max_ms: (map(.query_max_ms) | max)}
-  | .right_share = .right / .starts | .wrong_share = .wrong / .starts' $files >"$out/result.json"
+  | .right_share = .right / .starts | .wrong_share = .wrong / .starts'
+table "$out/result.json" '.cities | to_entries[] | [.key + 1] + (.value | [.map_poles, .trials, .right, .wrong,
+  .undecided, .metres_median, .metres_p95, .error_median_m, .query_max_ms])' city "map poles" starts right wrong \
+  undecided metres:1 "95 %:1" "error m:3" "query ms:1"
 jq -r '"\(.starts) starts: right \(.right), wrong \(.wrong), undecided \(.undecided); "
   + "ok said of a wrong pose \(.ok_wrong); longest step with a search \(.query_max_ms * 10 | round / 10) ms"' \
   "$out/result.json"

@@ -5,41 +5,29 @@
 #   OUT     gets the map, the trajectories, errors.txt and result.json (the scans are removed again)
 #   SEED    of the world, 1 unless given
 #   CONFIG  settings, config/hdl32e.ini unless given
-# Programs: build/bin, or POLEMCL_BIN. Needs 8 GB of disk while it runs.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq, and 8 GB of disk while it runs.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 3 "$@"
-out=$1
+make_out "$1"
 seed=${2:-1}
 settings=${3:-$top/config/hdl32e.ini}
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
-mkdir -p "$out"
+find_tools jq
 
 simulate_day "$settings" "$out" "$seed" 1500 0
 simulate_day "$settings" "$out" "$seed" 1500 1
 
-"$bin/pole-map" build --quiet --config "$out/day0.ini" --input "$out/day0.rawlog" \
-  --truth "$out/day0.tum" --output "$out/map.polemap" --csv "$out/map.csv"
-"$bin/pole-eval" map --quiet --one-to-one --radius 1.0 --truth "$out/poles_day0.csv" \
-  --map "$out/map.polemap" --json "$out/map.json" >/dev/null
-"$bin/pole-localize" --quiet --config "$out/day1.ini" --input "$out/day1.rawlog" \
-  --map "$out/map.polemap" --truth "$out/day1.tum" --output "$out/runs" \
-  --particles 1000 --runs 5 --seed 1
-
+map_drive "$out/day0" "$out/map.polemap" --csv "$out/map.csv"
+score_map 1.0 "$out/poles_day0.csv" "$out/map.polemap" "$out/map.json"
+localize_drive "$out/day1" "$out/map.polemap" "$out/runs" --particles 1000 --runs 5 --seed 1
 evaluate_runs "$out/runs" "$out/day1.tum"
 cp "$out/runs/errors.txt" "$out/errors.txt"
-{
-  echo '{'
-  echo "  \"world_seed\": $seed,"
-  echo '  "map":'
-  sed 's/^/    /' "$out/map.json"
-  echo '  ,"localization":'
-  runs_json "$out/runs" | sed 's/^/    /'
-  echo '}'
-} >"$out/result.json"
+jq -s --argjson seed "$seed" '{world_seed: $seed, map: .[0], localization: .[1]}' "$out/map.json" "$out/runs/errors.json" \
+  >"$out/result.json"
 
 echo "Simulated street of 1.5 km, world $seed, day 1 in the map of day 0; settings: $settings"
 printf 'map, one to one at 1 m: precision %.3f, recall %.3f, F1 %.3f\n' \

@@ -18,19 +18,12 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 3 "$@"
-mkdir -p "$1"
-out=$(cd "$1" && pwd)
+make_out "$1"
 first=${2:-941}
 last=$((first + ${3:-4} - 1))
 find_programs pole-simulate pole-map pole-localize pole-eval
 find_tools jq
-/usr/bin/python3 -c "import numpy" 2>/dev/null || die "numpy is needed: install python3-numpy"
-
-# localize DRIVE MAP FOLDER
-localize() {
-  "$bin/pole-localize" --quiet --config "$1.ini" --input "$1.rawlog" --map "$2" --truth "$1.tum" \
-    --output "$3" --seed 1 >/dev/null
-}
+find_modules numpy
 
 # score NAME WORLD DRIVE FOLDER SIGMA: adds a line to OUT/results
 score() {
@@ -62,13 +55,11 @@ sharpen() {
 }
 
 map_score() { # WORLD NAME MAP
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.25 --truth "$out/$1/1_poles_gt.csv" --map "$3" \
-    --json "$3.json" >/dev/null
+  score_map 0.25 "$out/$1/1_poles_gt.csv" "$3" "$3.json"
   jq --arg name "$2" --argjson world "$1" '{map_of: $name, world: $world, precision, recall, f1}' "$3.json" \
     >>"$out/maps"
 }
 
-: >"$out/results"
 : >"$out/maps"
 for world in $(seq "$first" "$last"); do
   here=$out/$world
@@ -85,24 +76,23 @@ for world in $(seq "$first" "$last"); do
     --crs "+proj=ortho +lat_0=52 +lon_0=13 +ellps=WGS84" --output "$here/inventory.polemap"
   map_score "$world" inventory "$here/inventory.polemap"
   for drive in 1 2 3 4; do
-    localize "$here/$drive" "$here/inventory.polemap" "$here/in-inventory-$drive"
+    localize_drive "$here/$drive" "$here/inventory.polemap" "$here/in-inventory-$drive" --seed 1
   done
   score inventory "$world" "$here/1" "$here/in-inventory-1" 0
   sharpen "$world" "$here/one.polemap" 1
   map_score "$world" "one drive" "$here/one.polemap"
   for drive in 2 3; do
-    localize "$here/$drive" "$here/one.polemap" "$here/in-one-$drive"
+    localize_drive "$here/$drive" "$here/one.polemap" "$here/in-one-$drive" --seed 1
     score "one drive" "$world" "$here/$drive" "$here/in-one-$drive" "$sigma"
   done
   sharpen "$world" "$here/four.polemap" 1 2 3 4
   map_score "$world" four "$here/four.polemap"
-  localize "$here/5" "$here/four.polemap" "$here/in-four-5"
+  localize_drive "$here/5" "$here/four.polemap" "$here/in-four-5" --seed 1
   score four "$world" "$here/5" "$here/in-four-5" "$sigma"
-  "$bin/pole-map" build --quiet --config "$here/1.ini" --input "$here/1.rawlog" --truth "$here/1.tum" \
-    --output "$here/true.polemap"
+  map_drive "$here/1" "$here/true.polemap"
   map_score "$world" truth "$here/true.polemap"
   for drive in 2 3; do
-    localize "$here/$drive" "$here/true.polemap" "$here/in-true-$drive"
+    localize_drive "$here/$drive" "$here/true.polemap" "$here/in-true-$drive" --seed 1
     score truth "$world" "$here/$drive" "$here/in-true-$drive" 0
   done
 done
@@ -114,10 +104,6 @@ jq -s --slurpfile maps "$out/maps" '{drives: ., maps: $maps, mean: (group_by(.ma
   | map(. as $m | . + {f1: ([$maps[] | select(.map_of == $m.map) | .f1] | add / length)})}' \
   "$out/results" >"$out/result.json"
 rm "$out/results" "$out/maps"
-jq -r '.mean[] | [.map, .f1, .mean_m, .worst_drive_m, .worst_m, .mean_deg, .local_m, .worst_local_m, .sigma_m, .nees_position] | @tsv' \
-  "$out/result.json" |
-  awk -F '\t' 'BEGIN { printf "%-10s %6s %8s %10s %9s %9s %8s %12s %8s %14s\n", "map", "F1", "mean m", "worst mean", "worst m",
-      "mean deg", "local m", "worst local", "sigma m", "NEES position" }
-    { printf "%-10s %6.3f %8.4f %10.4f %9.3f %9.4f %8.4f %12.4f %8.3f %14.2f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }' \
-    >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.mean[] | [.map, .f1, .mean_m, .worst_drive_m, .worst_m, .mean_deg, .local_m, .worst_local_m,
+  .sigma_m, .nees_position]' map F1:3 "mean m:4" "worst mean:4" "worst m:3" "mean deg:4" "local m:4" "worst local:4" \
+  "sigma m:3" "NEES position:2" | tee "$out/table.txt"

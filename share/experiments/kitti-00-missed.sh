@@ -16,15 +16,14 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 2 "$@"
 data=$1
-out=$2
 find_programs pole-import pole-extract pole-map pole-eval
-/usr/bin/python3 -c 'import numpy' 2>/dev/null || die "no numpy for Python: install python3-numpy"
+find_modules numpy
 truth=$data/published/kitti_truth_00.npz
 drive=$data/kitti_odom_00_long
 [ -f "$truth" ] || die "no labelled poles in $truth"
 [ -d "$drive" ] || die "no scans in $drive"
 config=$top/config/kitti.ini
-mkdir -p "$out"
+make_out "$2"
 
 # build NAME [OPTION...]: NAME.polemap and NAME.csv.
 build() {
@@ -43,8 +42,7 @@ build weak --set map.min_count=0.01 --set map.min_share=0
 /usr/bin/python3 "$top/share/experiments/kitti-00-missed.py" "$drive" "$out"
 
 # The program that scores maps must count the same labels as found.
-"$bin/pole-eval" map --quiet --one-to-one --truth "$out/near.csv" --map "$out/map.polemap" \
-  --json "$out/near.json" >/dev/null
+score_map 1 "$out/near.csv" "$out/map.polemap" "$out/near.json"
 found=$(awk -F , 'NR > 1 && $4 == "yes"' "$out/labels.csv" | wc -l)
 [ "$found" -eq "$(json_value "$out/near.json" matches)" ] ||
   die "$found labels found here, not as many by pole-eval: see $out/near.json"

@@ -15,12 +15,11 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 2 "$@"
 data=$1
-out=$2
 find_programs pole-import pole-map pole-eval
 find_tools jq
 truth=$data/published/kitti_truth_00.npz
 [ -f "$truth" ] || die "no labelled poles in $truth"
-mkdir -p "$out"
+make_out "$2"
 
 "$bin/pole-map" convert --quiet "$truth" --output "$out/truth.csv"
 
@@ -37,10 +36,8 @@ score() {
   map=$out/$1-$2.polemap
   "$bin/pole-map" build --quiet --config "$3" --input "$out/$1.rawlog" --truth "$out/$1.tum" \
     --output "$map"
-  "$bin/pole-eval" map --quiet --one-to-one --truth "$truth" --map "$map" \
-    --json "$out/all.json" >/dev/null
-  "$bin/pole-eval" map --quiet --one-to-one --truth "$out/$1-near.csv" --map "$map" \
-    --json "$out/near.json" >/dev/null
+  score_map 1 "$truth" "$map" "$out/all.json"
+  score_map 1 "$out/$1-near.csv" "$map" "$out/near.json"
   jq -n --arg drive "$1" --arg method "$2" --slurpfile a "$out/all.json" \
     --slurpfile n "$out/near.json" --argjson labelled "$(($(wc -l <"$out/$1-near.csv") - 1))" \
     '{drive: $drive, method: $method, true: $a[0].matches, precision: $a[0].precision,
@@ -58,9 +55,5 @@ for drive in kitti_odom_00 kitti_odom_00_long; do
 done | jq -s . >"$out/result.json"
 rm "$out/all.json" "$out/near.json"
 
-jq -r '["drive", "method", "map poles", "true", "precision", "labelled within 20 m", "of these found",
-    "recall"], (.[] | [.drive, .method, .map_poles, .true, (.precision * 100 | round / 100),
-    .labelled_near, .found_near, (.recall * 100 | round / 100)]) | @tsv' "$out/result.json" |
-  awk -F '\t' '{ printf "%-19s %-13s %9s %5s %10s %21s %15s %7s\n", $1, $2, $3, $4, $5, $6, $7, $8 }' \
-    >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.drive, .method, .map_poles, .true, .precision, .labelled_near, .found_near, .recall]' \
+  drive method "map poles" true precision:2 "labelled within 20 m" "of these found" recall:2 | tee "$out/table.txt"

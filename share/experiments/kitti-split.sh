@@ -7,7 +7,7 @@
 #             odometry alone: from the true start with a likelihood that no pole can change
 #   CONFIG    settings, config/kitti.ini unless given
 #   ODOMETRY  "visual": DATA_DIR/odometry.txt instead of the noisy truth
-# Programs: build/bin, or POLEMCL_BIN.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -15,7 +15,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 4 "$@"
 data=$1
-out=$2
+make_out "$2"
 config=${3:-$top/config/kitti.ini}
 case ${4:-noisy} in
   noisy) odometry="--odometry-noise 0.02 --seed 7" ;;
@@ -23,29 +23,27 @@ case ${4:-noisy} in
   *) die "odometry must be noisy or visual, not $4" ;;
 esac
 find_programs pole-import pole-map pole-localize pole-eval
+find_tools jq
 [ -d "$data/velodyne" ] || die "no scans in $data/velodyne"
-mkdir -p "$out"
 
 "$bin/pole-import" folder --quiet --input "$data" --output "$out/even.rawlog" --every 2 --offset 0
 # shellcheck disable=SC2086
 "$bin/pole-import" folder --quiet --input "$data" --output "$out/odd.rawlog" --every 2 --offset 1 \
   $odometry # options: several words
-"$bin/pole-map" build --quiet --config "$config" --input "$out/even.rawlog" --truth "$out/even.tum" \
-  --output "$out/map.polemap" --csv "$out/map.csv"
-"$bin/pole-localize" --quiet --config "$config" --input "$out/odd.rawlog" \
-  --map "$out/map.polemap" --truth "$out/odd.tum" --output "$out/runs" \
-  --particles 1000 --runs 5 --seed 1
+cp "$config" "$out/even.ini"
+cp "$config" "$out/odd.ini"
+map_drive "$out/even" "$out/map.polemap" --csv "$out/map.csv"
+localize_drive "$out/odd" "$out/map.polemap" "$out/runs" --particles 1000 --runs 5 --seed 1
 
 first=$(awk '!/^#/ { printf "%.9g,%.9g,%.9g", $2, $3,
   atan2(2 * ($8 * $7 + $5 * $6), 1 - 2 * ($6 * $6 + $7 * $7)) * 57.29577951308232; exit }' "$out/odd.tum")
-"$bin/pole-localize" --quiet --config "$config" --input "$out/odd.rawlog" --map "$out/map.polemap" \
-  --truth "$out/odd.tum" --output "$out/odometry" --start "$first,0,0" --particles 1000 --seed 1 \
+localize_drive "$out/odd" "$out/map.polemap" "$out/odometry" --start "$first,0,0" --particles 1000 --seed 1 \
   --set likelihood.gate_m=1e-9 --set search.recover=false --set odometry_monitor.enabled=false
 
 evaluate_runs "$out/odometry" "$out/odd.tum"
 evaluate_runs "$out/runs" "$out/odd.tum"
 cp "$out/runs/errors.txt" "$out/errors.txt"
-runs_json "$out/runs" >"$out/result.json"
+cp "$out/runs/errors.json" "$out/result.json"
 echo "Map from the even scans, localized on the odd ones; settings: $config"
 cat "$out/errors.txt"
-sed -n '$s/^mean   /alone  /p' "$out/odometry/errors.txt"
+sed -n '$s/^mean /alone/p' "$out/odometry/errors.txt"

@@ -13,12 +13,11 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 3 "$@"
 data=$1
-out=$2
+make_out "$2"
 seed=${3:-7}
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
 find_tools jq
 [ -f "$data/odometry.txt" ] || die "no odometry in $data/odometry.txt"
-mkdir -p "$out"
 
 "$top/share/experiments/hdl32-street.sh" "$out/street" "$seed" >/dev/null
 "$top/share/experiments/kitti-split.sh" "$data" "$out/split" >/dev/null
@@ -29,15 +28,7 @@ jq -n --slurpfile street "$out/street/result.json" --slurpfile split "$out/split
   --slurpfile visual "$out/visual/result.json" \
   '{street: ($street[0].localization + {world_seed: $street[0].world_seed, map: $street[0].map}),
     split: $split[0], visual: $visual[0]}' >"$out/result.json"
-jq -r --arg street "street, world $seed, 1.5 km" '
-  def shown($digits): . * pow(10; $digits) | round / pow(10; $digits) | tostring;
-  . as $all
-  | ["drive", "position m", "RMSE m", "heading deg", "RMSE deg", "largest m"],
-    (([$street, "street"], ["KITTI split, truth + 2 %", "split"],
-      ["KITTI split, visual odometry", "visual"]) as [$name, $key]
-     | $all[$key].mean as $m
-     | [$name, ($m.pos_mean | shown(4)), ($m.pos_rmse | shown(4)), ($m.ang_mean_deg | shown(3)),
-        ($m.ang_rmse_deg | shown(3)), ($m.pos_max | shown(3))])
-  | @tsv' "$out/result.json" >"$out/table.txt" || die "cannot read $out/result.json"
 echo "Localization, mean of 5 runs of 1000 particles each"
-awk -F '\t' '{ printf "%-32s %11s %9s %12s %9s %10s\n", $1, $2, $3, $4, $5, $6 }' "$out/table.txt"
+table "$out/result.json" "([\"street, world $seed, 1.5 km\", .street], [\"KITTI split, truth + 2 %\", .split],
+  [\"KITTI split, visual odometry\", .visual]) | [.[0], (.[1].mean | .pos_mean, .pos_rmse, .ang_mean_deg, .ang_rmse_deg,
+  .pos_max)]" drive "position m:4" "RMSE m:4" "heading deg:3" "RMSE deg:3" "largest m:3" | tee "$out/table.txt"

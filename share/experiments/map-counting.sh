@@ -13,8 +13,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 3 "$@"
-mkdir -p "$1"
-out=$(cd "$1" && pwd)
+make_out "$1"
 first=${2:-311}
 last=$((first + ${3:-3} - 1))
 find_programs pole-simulate pole-import pole-extract pole-map pole-eval
@@ -25,15 +24,13 @@ build() {
   here=$out/$1-$2
   # shellcheck disable=SC2086 # several words
   "$bin/pole-map" build --quiet --config "$here/street.ini" $4 --input "$here/poles.rawlog" \
-    --truth "$here/street.tum" --output "$here/$3.polemap"
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$here/poles.csv" \
-    --map "$here/$3.polemap" --json "$here/$3.json" >/dev/null
+    --truth "$here/poles.tum" --output "$here/$3.polemap"
+  score_map 0.5 "$here/poles.csv" "$here/$3.polemap" "$here/$3.json"
   jq -c --arg sensor "$1" --argjson world "$2" --arg rule "$3" \
     '{sensor: $sensor, world: $world, rule: $rule, precision, recall, f1, matches, map_poles, truth_poles}' \
     "$here/$3.json" >>"$out/results"
 }
 
-: >"$out/results"
 for sensor in kitti hdl32e vlp16; do
   # The former defaults beside those of today.
   today="--set map.min_confidence=0.5" # what 0 stands for where scans are read
@@ -48,24 +45,16 @@ for sensor in kitti hdl32e vlp16; do
     copy_settings "$top/config/$sensor.ini" "$here/street.ini" simulation.spacing_m=1.0 world.length_m=200 \
       "world.seed=$world"
     "$bin/pole-simulate" --quiet --config "$here/street.ini" --output "$here/scans"
-    "$bin/pole-import" folder --quiet --input "$here/scans" --output "$here/scans.rawlog"
-    "$bin/pole-extract" --quiet --config "$here/street.ini" --set scan_line.min_confidence=0.3 \
-      --input "$here/scans.rawlog" --output "$here/poles.rawlog"
-    mv "$here/scans.tum" "$here/street.tum"
+    copy_settings "$here/street.ini" "$here/poles.ini" scan_line.min_confidence=0.3
+    find_poles "$here/scans" "$here/poles" "$here/poles.ini"
     mv "$here/scans/poles_gt.csv" "$here/poles.csv"
-    rm -r "$here/scans" "$here/scans.rawlog"
+    rm -r "$here/scans"
     build $sensor "$world" run "$former"
     build $sensor "$world" confidences "$today"
   done
 done
 
-jq -s . "$out/results" >"$out/result.json"
-rm "$out/results"
-jq -r 'group_by([.sensor, .rule])[] | (map(.matches) | add) as $m |
-  [.[0].sensor, .[0].rule, $m / (map(.map_poles) | add),
-   $m / (map(.truth_poles) | add), (map(.f1) | min)] | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN { printf "%-8s %-12s %9s %7s %7s %9s\n", "config", "counting", "precision", "recall",
-      "F1", "worst F1" }
-    { printf "%-8s %-12s %9.3f %7.3f %7.3f %9.3f\n", $1, $2, $3, $4, 2 * $3 * $4 / ($3 + $4), $5 }' \
-    >"$out/table.txt"
-cat "$out/table.txt"
+collect_results .
+table "$out/result.json" 'def share(f): (map(.matches) | add) / (map(f) | add); group_by([.sensor, .rule])[] | [.[0].sensor,
+  .[0].rule, share(.map_poles), share(.truth_poles), share((.map_poles + .truth_poles) / 2), (map(.f1) | min)]' \
+  config counting precision:3 recall:3 F1:3 "worst F1:3" | tee "$out/table.txt"

@@ -29,13 +29,9 @@ score() {
   done
   "$bin/pole-map" build --quiet --config "$config" --set sensor.turn=auto "$@" --input "$out/$method.rawlog" \
     --truth "$out/scans.tum" --output "$out/map.polemap" 2>/dev/null
-  for metres in 20 40; do
-    "$bin/pole-eval" map --quiet --one-to-one --radius 1 --truth "$labels/truth_${metres}m.csv" \
-      --map "$out/map.polemap" --json "$out/$metres.json" >/dev/null
-  done
-  jq -n --arg method "$method" --arg thresholds "$thresholds" --slurpfile near "$out/20.json" \
-    --slurpfile far "$out/40.json" '{method: $method, thresholds: $thresholds, precision: $far[0].precision,
-      recall: $near[0].recall} | .f1 = 2 * .precision * .recall / (.precision + .recall)' >>"$out/results"
+  score_near 1 "$labels/truth_40m.csv" "$labels/truth_20m.csv" "$out/map.polemap" |
+    jq --arg method "$method" --arg thresholds "$thresholds" '{method: $method, thresholds: $thresholds} + .' \
+      >>"$out/results"
 }
 
 # extract METHOD CONFIG [OPTION...]
@@ -46,9 +42,8 @@ extract() {
     --output "$out/$method.rawlog"
 }
 
-: >"$out/results"
-"$bin/pole-import" folder --quiet --input "$kilometre" --output "$out/scans.rawlog" --turn clockwise --cut-deg 180 \
-  --stamp-turn 0.5
+# shellcheck disable=SC2086 # several words
+"$bin/pole-import" folder --quiet --input "$kilometre" --output "$out/scans.rawlog" $clockwise
 extract ours "$top/config/kitti.ini" --set scan_line.min_confidence=0.3
 for confidence in 0.3 0.5 0.65 0.8 0.9; do
   for count in 1.5 2 3 4 6 8; do
@@ -60,9 +55,8 @@ for name in kitti kitti-mended; do
   for count in 1 2 3 4 5 6 7 8 9 10 12; do score paper-$name "$top/config/paper/$name.ini" map.min_count=$count; done
 done
 rm "$out"/*.rawlog
-jq -s . "$out/results" >"$out/result.json"
-rm "$out/results"
-jq -r '(group_by(.method) | map(max_by(.f1))) + map(select(.thresholds == "map.min_confidence=0.65 map.min_count=3" or
-    .thresholds == "map.min_count=1")) | .[] | [.method, .thresholds, .precision, .recall, .f1] | @tsv' "$out/result.json" |
-  awk -F '\t' '{ printf "%-20s %-44s %.3f %.3f %.3f\n", $1, $2, $3, $4, $5 }' >"$out/table.txt"
-cat "$out/table.txt"
+collect_results .
+table "$out/result.json" '(group_by(.method) | map(max_by(.f1))) +
+  map(select(.thresholds == "map.min_confidence=0.65 map.min_count=3" or .thresholds == "map.min_count=1"))
+  | .[] | [.method, .thresholds, .precision, .recall, .f1]' \
+  method thresholds precision:3 recall:3 F1:3 | tee "$out/table.txt"

@@ -16,7 +16,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 kilometre_arguments "$@"
 find_programs pole-import pole-extract pole-map
-/usr/bin/python3 -c 'import numpy' 2>/dev/null || die "no numpy for Python: install python3-numpy"
+find_modules numpy
 config=$top/config/kitti.ini
 
 # build NAME [OPTION...]: NAME.csv.
@@ -27,8 +27,8 @@ build() {
     --truth "$out/scans.tum" --output "$out/$name.polemap" --csv "$out/$name.csv" 2>/dev/null
 }
 
-"$bin/pole-import" folder --quiet --input "$kilometre" --output "$out/scans.rawlog" --turn clockwise --cut-deg 180 \
-  --stamp-turn 0.5
+# shellcheck disable=SC2086 # several words
+"$bin/pole-import" folder --quiet --input "$kilometre" --output "$out/scans.rawlog" $clockwise
 "$bin/pole-extract" --quiet --config "$config" --set sensor.turn=auto --set scan_line.min_confidence=0 \
   --input "$out/scans.rawlog" --output "$out/poles.rawlog" --csv "$out/poles.csv"
 build map

@@ -16,13 +16,12 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 4 "$@"
-out=$1
+make_out "$1"
 first=${2:-811}
 last=$((first + ${3:-4} - 1))
 settings=${4:-$top/config/hdl32e.ini}
 find_programs pole-simulate pole-map pole-eval
 find_tools jq
-mkdir -p "$out"
 
 # drive WORLD DAY: OUT/WORLD-DAY.ini .rawlog .tum, _smooth.tum, _rough.tum
 drive() {
@@ -47,8 +46,7 @@ keep() {
   # shellcheck disable=SC2086 # lists of files
   "$bin/pole-map" update --quiet --config "$out/$1-0.ini" --map "$out/$1.polemap" --input $inputs --truth $truths \
     --output "$out/$1-kept.polemap" --json "$out/update.json" --set "map_update.align_sigma_m=$3" 2>"$out/$1-$2-$3.err"
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$out/$1-0_poles_gt.csv" \
-    --map "$out/$1-kept.polemap" --json "$out/kept.json"
+  score_map 0.5 "$out/$1-0_poles_gt.csv" "$out/$1-kept.polemap" "$out/kept.json"
   jq -n --arg errors "$2" --argjson world "$1" --argjson aligned "$([ "$3" = 0 ] && echo false || echo true)" \
     --slurpfile before "$out/$1-before.json" --slurpfile kept "$out/kept.json" --slurpfile update "$out/update.json" \
     'def scores: {precision, recall, f1, shift_x_m, shift_y_m, rotation_deg};
@@ -57,30 +55,22 @@ keep() {
     >>"$out/results"
 }
 
-: >"$out/results"
 for world in $(seq "$first" "$last"); do
   for day in 0 1 2 3 4 5 6; do drive "$world" $day; done
-  "$bin/pole-map" build --quiet --config "$out/$world-0.ini" --input "$out/$world-0.rawlog" \
-    --truth "$out/$world-0.tum" --output "$out/$world.polemap"
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$out/$world-0_poles_gt.csv" \
-    --map "$out/$world.polemap" --json "$out/$world-before.json"
+  map_drive "$out/$world-0" "$out/$world.polemap"
+  score_map 0.5 "$out/$world-0_poles_gt.csv" "$out/$world.polemap" "$out/$world-before.json"
   for errors in none smooth rough; do
     keep "$world" $errors 0.2
     keep "$world" $errors 0
   done
 done
-jq -s '{worlds: ., mean: (group_by([.errors, .aligned]) | map({errors: .[0].errors, aligned: .[0].aligned,
+collect_results '{worlds: ., mean: (group_by([.errors, .aligned]) | map({errors: .[0].errors, aligned: .[0].aligned,
     f1_before: (map(.before.f1) | add / length), f1: (map(.after.f1) | add / length),
     f1_worst: (map(.after.f1) | min),
     precision: (map(.after.precision) | add / length), recall: (map(.after.recall) | add / length),
     shift_m_max: (map([.after.shift_x_m, .after.shift_y_m] | map(. * .) | add | sqrt) | max),
-    moved_share_max: (map(.moved_share_max) | max), warnings: (map(.warnings) | add)}))}' \
-  "$out/results" >"$out/result.json"
-rm "$out/results" "$out/kept.json" "$out/update.json"
-jq -r '.mean[] | [.errors, .aligned, .f1_before, .precision, .recall, .f1, .f1_worst, .shift_m_max, .warnings] | @tsv' \
-  "$out/result.json" | awk -F '\t' 'BEGIN {
-      format = "%-7s %-8s %10s %10s %8s %8s %9s %9s %9s\n"
-      printf format, "errors", "aligned", "F1 before", "precision", "recall", "F1", "worst F1", "shift m", "warnings" }
-    { printf "%-7s %-8s %10.4f %10.4f %8.4f %8.4f %9.4f %9.4f %9d\n", $1, $2, $3, $4, $5, $6, $7, $8, $9 }
-  ' >"$out/table.txt"
-cat "$out/table.txt"
+    moved_share_max: (map(.moved_share_max) | max), warnings: (map(.warnings) | add)}))}'
+rm "$out/kept.json" "$out/update.json"
+table "$out/result.json" \
+  '.mean[] | [.errors, .aligned, .f1_before, .precision, .recall, .f1, .f1_worst, .shift_m_max, .warnings]' \
+  errors aligned "F1 before:4" precision:4 recall:4 F1:4 "worst F1:4" "shift m:4" warnings | tee "$out/table.txt"

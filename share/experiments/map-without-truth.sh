@@ -28,8 +28,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 6 "$@"
 data=$(cd "$1" && pwd)
-mkdir -p "$2"
-out=$(cd "$2" && pwd)
+make_out "$2"
 shift 2
 kilometre="" tracks=""
 while [ $# -gt 0 ]; do
@@ -43,11 +42,9 @@ while [ $# -gt 0 ]; do
 done
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize
 find_tools jq
-/usr/bin/python3 -c 'import scipy' 2>/dev/null || die "scipy is needed: install python3-scipy"
-clockwise="--turn clockwise --cut-deg 180 --stamp-turn 0.5"
+find_modules scipy
 biased="--odometry-noise 0.02 --odometry-scale 0.01 --odometry-yaw-deg-m 0.01"
 cd "$out"
-: >results
 
 # with_ending ENDING SEPARATOR NAME...: names of files.
 with_ending() {
@@ -151,8 +148,7 @@ nuscenes() {
 # The second day of a street in both maps of the first.
 localized() {
   draw_drive "$out/again-$1" "$top/config/hdl32e.ini" "$1" 1 world.length_m=600
-  "$bin/pole-map" build --quiet --config "street-$1.ini" --input "street-$1.rawlog" --truth "street-$1.tum" \
-    --output "true-$1.polemap" >/dev/null
+  map_drive "street-$1" "true-$1.polemap"
   for kind in street true; do
     "$bin/pole-localize" --quiet --config "again-$1.ini" --input "again-$1.rawlog" --map "$kind-$1.polemap" --global \
       --output "localized-$kind-$1" >/dev/null
@@ -192,11 +188,7 @@ two_halves() {
 $half
 END
     # shellcheck disable=SC2086 # several words
-    "$bin/pole-import" folder --quiet --input "$kilometre" --output scans.rawlog --every 2 --offset "$offset" \
-      --seed "$seed" $clockwise $biased
-    mv scans.tum "$part.tum"
-    "$bin/pole-extract" --quiet --config "$top/config/kitti.ini" --input scans.rawlog --output "$part.rawlog"
-    rm scans.rawlog
+    find_poles "$kilometre" "$part" "$top/config/kitti.ini" --every 2 --offset "$offset" --seed "$seed" $clockwise $biased
   done
   map kilometre-two "$top/config/kitti.ini" "even odd" "even odd" 0.025,0.03
   map kilometre-even "$top/config/kitti.ini" even even 0.025,0.03 --keep-scans
@@ -250,17 +242,12 @@ for world in $(seq 701 704); do
 done
 for world in $(seq 701 720); do apart "$world" $((world == 720 ? 701 : world + 1)); done
 
-jq -s . results >result.json
-rm results
-jq -r '.[] | select(.drive) | [.drive, .loops, .length, .rms, .max, .local, .end_percent, .nees, .seconds, .timing] | @tsv' result.json |
-  awk -F '\t' 'BEGIN {
-      format = "%-26s %6s %8s %8s %8s %8s %8s %6s %8s  %s\n"
-      printf format, "drive", "loops", "way m", "rms m", "max m", "local m", "end %", "NEES", "seconds", "timing" }
-    { printf format, $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }' >table.txt
+collect_results .
 {
+  table result.json '.[] | select(.drive) | [.drive, .loops, .length, .rms, .max, .local, .end_percent, .nees, .seconds,
+    .timing]' drive loops "way m:1" "rms m:4" "max m:4" "local m:4" "end %:3" NEES:2 seconds timing
   jq -r '.[] | select(.localized) | "localized in \(.localized), \(.map): ok \(.ok), \(.local) m"' result.json
   jq -r '[.[] | select(.apart) | .refused] | "two streets, refused: \(map(select(.)) | length) of \(length)"' result.json
   jq -r '.[] | select(.truth) | "\(.truth): poses by the points on each side end \(.sides_apart_m) m and \(.sides_apart_deg) degrees apart"' result.json
   jq -r '.[] | select(.earth_rms) | "\(.drive) on Earth: \(.earth_rms) m, NEES \(.earth_nees)"' result.json
-} >>table.txt
-cat table.txt
+} | tee table.txt

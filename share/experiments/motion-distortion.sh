@@ -16,8 +16,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 4 "$@"
-mkdir -p "$1"
-out=$(cd "$1" && pwd)
+make_out "$1"
 first=${2:-821}
 last=$((first + ${3:-2} - 1))
 length=${4:-200}
@@ -28,9 +27,8 @@ find_tools jq
 score() {
   sensor=$1 speed=$2 spacing=$3 scans=$4
   shift 4
-  world=$first
   runs=
-  while [ "$world" -le "$last" ]; do
+  for world in $(seq "$first" "$last"); do
     here=$out/$sensor-$scans-$world
     for day in 0 1; do
       reverse=false
@@ -39,23 +37,18 @@ score() {
       simulate_day "$top/config/$sensor.ini" "$here" "$world" "$length" "$day" \
         "simulation.speed_m_s=$speed" "simulation.spacing_m=$spacing" "simulation.reverse=$reverse" "$@"
     done
-    "$bin/pole-map" build --quiet --config "$here/day0.ini" --input "$here/day0.rawlog" \
-      --truth "$here/day0.tum" --output "$here/map.polemap"
-    "$bin/pole-localize" --quiet --config "$here/day1.ini" --input "$here/day1.rawlog" \
-      --map "$here/map.polemap" --truth "$here/day1.tum" --output "$here/runs" --runs 5 --seed 1
+    map_drive "$here/day0" "$here/map.polemap"
+    localize_drive "$here/day1" "$here/map.polemap" "$here/runs" --runs 5 --seed 1
     evaluate_runs "$here/runs" "$here/day1.tum"
-    runs="$runs $here/runs/run_00.json $here/runs/run_01.json $here/runs/run_02.json"
-    runs="$runs $here/runs/run_03.json $here/runs/run_04.json"
-    world=$((world + 1))
+    runs="$runs $here/runs/errors.json"
   done
   # shellcheck disable=SC2086 # a list of files
   jq -s --arg sensor "$sensor" --arg speed "$speed" --arg scans "$scans" \
-    '{sensor: $sensor, speed_m_s: ($speed | tonumber), scans: $scans,
+    'map(.runs) | add | {sensor: $sensor, speed_m_s: ($speed | tonumber), scans: $scans,
       pos_mean: (map(.pos_mean) | add / length), ang_mean_deg: (map(.ang_mean_deg) | add / length),
       worst_run_m: (map(.pos_mean) | max)}' $runs >>"$out/results"
 }
 
-: >"$out/results"
 for drive in "hdl32e 5 0.5" "mulran 15 1.5"; do
   # shellcheck disable=SC2086 # three words
   score $drive still
@@ -64,10 +57,6 @@ for drive in "hdl32e 5 0.5" "mulran 15 1.5"; do
   # shellcheck disable=SC2086
   score $drive moving-used-as-they-are simulation.motion_distortion=true sensor.turn=compensated
 done
-jq -s . "$out/results" >"$out/result.json"
-rm "$out/results"
-jq -r '.[] | [.sensor, .speed_m_s, .scans, .pos_mean, .ang_mean_deg, .worst_run_m] | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN { printf "%-8s %6s %-24s %8s %9s %12s\n", "config", "m/s", "scans", "mean m", "mean deg",
-      "worst run m" }
-    { printf "%-8s %6s %-24s %8.4f %9.4f %12.4f\n", $1, $2, $3, $4, $5, $6 }' >"$out/table.txt"
-cat "$out/table.txt"
+collect_results .
+table "$out/result.json" '.[] | [.sensor, .speed_m_s, .scans, .pos_mean, .ang_mean_deg, .worst_run_m]' \
+  config m/s scans "mean m:4" "mean deg:4" "worst run m:4" | tee "$out/table.txt"

@@ -19,8 +19,7 @@ check_arguments 4 4 "$@"
 authors=$1/published/nclt_map_8_0.50_0.08.npz
 keyframes=$2
 truth=$3
-mkdir -p "$4"
-out=$(cd "$4" && pwd)
+make_out "$4"
 find_programs pole-import pole-map pole-localize
 find_tools jq git
 [ -f "$authors" ] || die "no map of the authors in $authors"

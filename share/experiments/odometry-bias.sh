@@ -16,7 +16,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 4 "$@"
-out=$1
+make_out "$1"
 shift
 cast=no
 if [ "${1-}" = --cast ]; then
@@ -29,8 +29,6 @@ last=$((first + ${2:-4} - 1))
 settings=$top/config/hdl32e.ini
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
 find_tools jq
-mkdir -p "$out"
-out=$(cd "$out" && pwd)
 # Left by a run that was stopped: of another drive.
 rm -rf "$out"/scans "$out"/scans.*
 all_errors="0,0 0.01,0.01 0.05,0.05"
@@ -51,23 +49,14 @@ drive() (
   copy_settings "$name.ini" "$scans.ini" sensor.model=uniform sensor.rings=2 sensor.columns=90
   "$bin/pole-simulate" --quiet --config "$scans.ini" --output "$scans.odometry"
   cp "$scans.odometry/odometry.txt" "$scans/odometry.txt"
-  "$bin/pole-import" folder --quiet --input "$scans" --output "$scans.rawlog"
-  "$bin/pole-extract" --quiet --config "$name.ini" --input "$scans.rawlog" --output "$name.rawlog"
-  mv "$scans.tum" "$name.tum"
-  rm -r "$scans.rawlog" "$scans.ini" "$scans.odometry"
+  find_poles "$scans" "$name" "$name.ini"
+  rm -r "$scans.ini" "$scans.odometry"
 )
-
-# localize NAME CALIBRATED: a run in NAME-CALIBRATED
-localize() {
-  "$bin/pole-localize" --quiet --config "$1.ini" --input "$1.rawlog" --map "$out/$world.polemap" \
-    --truth "$1.tum" --output "$1-$2" --seed "$world" --set "odometry_calibration.enabled=$2"
-}
 
 for world in $(seq "$first" "$last"); do
   scans=$out/scans
   drive "$out/$world-map" "$world" 0 false noise 0 0
-  "$bin/pole-map" build --quiet --config "$out/$world-map.ini" --input "$out/$world-map.rawlog" \
-    --truth "$out/$world-map.tum" --output "$out/$world.polemap"
+  map_drive "$out/$world-map" "$out/$world.polemap"
   rm -rf "$scans"
   for direction in forward reverse; do
     [ $direction = reverse ] && back=true || back=false
@@ -75,7 +64,10 @@ for world in $(seq "$first" "$last"); do
       for errors in $all_errors; do
         name=$out/$world-$direction-$odometry-$errors
         drive "$name" "$world" 1 "$back" "$odometry" "${errors%,*}" "${errors#*,}"
-        for calibrated in true false; do localize "$name" $calibrated; done
+        for calibrated in true false; do
+          localize_drive "$name" "$out/$world.polemap" "$name-$calibrated" --seed "$world" \
+            --set odometry_calibration.enabled=$calibrated
+        done
       done
     done
     rm -rf "$scans"
@@ -108,7 +100,6 @@ score() {
       ok_beyond_5_sigma_s: $ok[0].longest_beyond_5_sigma_s}' >>"$out/results"
 }
 
-: >"$out/results"
 for odometry in noise wheels; do
   for errors in $all_errors; do
     for calibrated in true false; do
@@ -116,15 +107,8 @@ for odometry in noise wheels; do
     done
   done
 done
-jq -s . "$out/results" >"$out/result.json"
-rm "$out/results" "$out/score.json" "$out/ok.json"
-jq -r '.[] | [.odometry, .scale, .yaw_deg_m, .calibrated, .direction, .mean_m, .worst_world_mean_m, .worst_world,
-    .nees, .coverage_95, .not_ok, .ok_beyond_5_sigma_s] | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN {
-      format = "%-8s %6s %9s %10s %9s %8s %8s %6s %8s %9s %6s %8s\n"
-      printf format, "odometry", "scale", "yaw deg/m", "calibrated", "direction", "mean m", "worst m", "world", \
-        "NEES", "coverage", "not ok", "beyond s" }
-    { printf "%-8s %6g %9g %10s %9s %8.4f %8.4f %6s %8.2f %9.3f %6d %8.1f\n", \
-        $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12 }
-  ' >"$out/table.txt"
-cat "$out/table.txt"
+collect_results .
+rm "$out/score.json" "$out/ok.json"
+table "$out/result.json" '.[] | [.odometry, .scale, .yaw_deg_m, .calibrated, .direction, .mean_m, .worst_world_mean_m,
+  .worst_world, .nees, .coverage_95, .not_ok, .ok_beyond_5_sigma_s]' odometry scale "yaw deg/m" calibrated direction \
+  "mean m:4" "worst m:4" world NEES:2 coverage:3 "not ok" "beyond s:1" | tee "$out/table.txt"

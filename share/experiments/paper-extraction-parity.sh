@@ -16,10 +16,9 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 2 "$@"
 data=$1
-out=$2
+make_out "$2"
 find_programs pole-import pole-extract
 find_tools jq
-mkdir -p "$out"
 
 # partners THEIRS OURS SIDE SCANS: one JSON object. SIDE: -1 where y counts to the right in THEIRS.
 partners() {
@@ -64,15 +63,9 @@ compare() {
     "$bin/pole-import" nclt --quiet --input "$data/nclt_scan" --output "$out/nclt_scan.rawlog"
     compare nclt_scan -1 "$top/config/paper/nclt.ini"
   fi
-} >"$out/rows.json"
-jq -s . "$out/rows.json" >"$out/result.json"
-rm -f "$out/poles.rawlog" "$out/rows.json"
+} | jq -s . >"$out/result.json"
+rm -f "$out/poles.rawlog"
 [ "$(jq length "$out/result.json")" -gt 0 ] || die "no tables in $data/first_implementation"
 
-jq -r '["set", "config", "scans", "theirs", "ours", "ours/scan", "found %", "more %", "largest cm"],
-  (.[] | [.set, .config, .scans, .theirs, .ours, (.ours_per_scan * 10 | round / 10),
-    (.found * 10000 | round / 100), (.more * 10000 | round / 100),
-    (.largest_m * 10000 | round / 100)]) | @tsv' "$out/result.json" |
-  awk -F '\t' '{ printf "%-15s %-17s %5s %6s %6s %9s %8s %7s %10s\n", $1, $2, $3, $4, $5, $6, $7, $8, $9 }' \
-    >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.[] | [.set, .config, .scans, .theirs, .ours, .ours_per_scan, .found * 100, .more * 100,
+  .largest_m * 100]' set config scans theirs ours ours/scan:1 "found %:2" "more %:2" "largest cm:2" | tee "$out/table.txt"

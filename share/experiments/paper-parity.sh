@@ -9,9 +9,9 @@
 # Usage: share/experiments/paper-parity.sh DATA OUT [SEEDS]
 #   DATA   the folder of scans (kitti_raw_0005: velodyne/, times.txt, poses.txt and
 #          poses_scan_matching.txt)
-#   OUT    gets the maps, parity.csv (each seed), parity.json (the table) and table.md
+#   OUT    gets the maps, results (each seed, a line of JSON), parity.json and table.txt
 #   SEEDS  20 unless given
-# Programs: build/bin, or POLEMCL_BIN. 5 minutes on 2 cores.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq; 5 minutes on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -19,15 +19,14 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 3 "$@"
 data=$(cd "$1" && pwd)
-out=$2
+make_out "$2"
 seeds=${3:-20}
 find_programs pole-import pole-map pole-extract pole-localize
+find_tools jq
 [ "$seeds" -ge 1 ] 2>/dev/null || die "SEEDS must be a number of at least 1, not $seeds"
 for file in velodyne times.txt poses.txt poses_scan_matching.txt; do
   [ -e "$data/$file" ] || die "no $file in $data"
 done
-mkdir -p "$out"
-out=$(cd "$out" && pwd)
 
 # Cadence, particles and start of the protocol replace those of the settings.
 map_options="--set map.every_scan=true --set map.middle=nearest"
@@ -44,7 +43,7 @@ folder_of() {
   echo "$folder"
 }
 
-# run NAME CONFIG OPTIONS POSES [EXTRACTION]: a row of parity.csv per seed and radius. EXTRACTION: the
+# run NAME CONFIG OPTIONS POSES [EXTRACTION]: a line of results per seed and radius. EXTRACTION: the
 # configuration that finds the poles, CONFIG unless given.
 run() {
   folder=$(folder_of "$4")
@@ -57,8 +56,7 @@ run() {
   # shellcheck disable=SC2086 # options: several words
   "$bin/pole-map" build --quiet --config "$top/config/$2" $poses_options \
     --input "$folder/even_poles.rawlog" --truth "$folder/even.tum" --output "$folder/$1.polemap"
-  seed=1
-  while [ "$seed" -le "$seeds" ]; do
+  for seed in $(seq "$seeds"); do
     "$bin/pole-import" folder --quiet --input "$folder" --output "$folder/odd.rawlog" --every 2 \
       --offset 1 --odometry-noise 0.02 --seed "$seed"
     "$bin/pole-extract" --quiet --config "$top/config/$finds" --input "$folder/odd.rawlog" \
@@ -69,15 +67,13 @@ run() {
         --set start.radius_m=$radius --particles 1000 --seed "$seed" \
         --input "$folder/poles.rawlog" --map "$folder/$1.polemap" --truth "$folder/odd.tum" \
         --output "$folder/run"
-      printf '%s,%s,%s,%s,%s,%s\n' "$1" "$4" "$radius" "$seed" \
-        "$(json_value "$folder/run/summary.json" pos_mean)" \
-        "$(json_value "$folder/run/summary.json" ang_mean_deg)" >>"$out/parity.csv"
+      jq -c --arg settings "$1" --arg poses "$4" --argjson radius $radius --argjson seed "$seed" '{settings: $settings,
+        poses: $poses, start_radius_m: $radius, seed: $seed, pos_mean, ang_mean_deg}' "$folder/run/summary.json" \
+        >>"$out/results"
     done
-    seed=$((seed + 1))
   done
 }
 
-echo 'settings,poses,start_radius_m,seed,position_m,heading_deg' >"$out/parity.csv"
 for poses in poses_scan_matching.txt poses.txt; do
   run paper paper/kitti.ini "$paper_options" $poses
   run paper-mended paper/kitti-mended.ini "$paper_options" $poses
@@ -87,38 +83,20 @@ for poses in poses_scan_matching.txt poses.txt; do
 done
 
 # Ten seeds of the authors' program on its own detections; see the README of the data.
-reference='first-implementation,poses_scan_matching.txt,2.5,0.058,0.029,0.143,0.092,0.054,0.184
-first-implementation,poses_scan_matching.txt,0.5,0.032,0.024,0.045,0.056,0.026,0.087
-first-implementation,poses.txt,2.5,0.055,0.032,0.132,0.076,0.045,0.190
-first-implementation,poses.txt,0.5,0.030,0.021,0.045,0.058,0.042,0.088'
-{
-  printf '%s\n' "$reference" | sed 's/^/10,/'
-  awk -F , 'NR > 1 {
-      key = $1 "," $2 "," $3
-      if (!(key in n)) { order[++keys] = key; p0[key] = h0[key] = 1e9 }
-      ++n[key]; p[key] += $5; h[key] += $6
-      if ($5 < p0[key]) p0[key] = $5
-      if ($5 > p1[key]) p1[key] = $5
-      if ($6 < h0[key]) h0[key] = $6
-      if ($6 > h1[key]) h1[key] = $6
-    }
-    END { for (i = 1; i <= keys; ++i) { k = order[i]
-      printf "%d,%s,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", n[k], k, p[k] / n[k], p0[k], p1[k], \
-        h[k] / n[k], h0[k], h1[k] } }' "$out/parity.csv"
-} | sort -s -t , -k 3,3r -k 4,4r >"$out/rows"
-
-awk -F , '
-  BEGIN { print "[" }
-  { printf "%s  {\"settings\": \"%s\", \"poses\": \"%s\", \"start_radius_m\": %s, \"seeds\": %s,\n", \
-      (NR > 1 ? ",\n" : ""), $2, $3, $4, $1
-    printf "   \"position_m\": {\"mean\": %s, \"least\": %s, \"greatest\": %s},\n", $5, $6, $7
-    printf "   \"heading_deg\": {\"mean\": %s, \"least\": %s, \"greatest\": %s}}", $8, $9, $10 }
-  END { print "\n]" }' "$out/rows" >"$out/parity.json"
-{
-  echo '| poses | start | settings | seeds | position m | heading deg |'
-  echo '|---|---|---|---|---|---|'
-  awk -F , '{ printf "| %s | %s m | %s | %d | %.3f (%.3f to %.3f) | %.3f (%.3f to %.3f) |\n", \
-    $3, $4, $2, $1, $5, $6, $7, $8, $9, $10 }' "$out/rows"
-} >"$out/table.md"
-rm "$out/rows"
-cat "$out/table.md"
+jq -s '
+  def figures($values): {mean: $values[0], least: $values[1], greatest: $values[2]};
+  def spread(key): map(key) | figures([add / length, min, max] | map(. * 10000 | round / 10000));
+  ([["poses_scan_matching.txt", 2.5, [0.058, 0.029, 0.143], [0.092, 0.054, 0.184]],
+   ["poses_scan_matching.txt", 0.5, [0.032, 0.024, 0.045], [0.056, 0.026, 0.087]],
+   ["poses.txt", 2.5, [0.055, 0.032, 0.132], [0.076, 0.045, 0.190]],
+   ["poses.txt", 0.5, [0.030, 0.021, 0.045], [0.058, 0.042, 0.088]]]
+  | map({settings: "first-implementation", poses: .[0], start_radius_m: .[1], seeds: 10, position_m: figures(.[2]),
+      heading_deg: figures(.[3])})) as $authors
+  | ["first-implementation", "paper", "paper-mended", "ours", "our-poles", "paper-poles"] as $order
+  | $authors + (group_by([.settings, .poses, .start_radius_m]) | map((.[0] | {settings, poses, start_radius_m})
+      + {seeds: length, position_m: spread(.pos_mean), heading_deg: spread(.ang_mean_deg)}))
+  | sort_by(.settings as $name | .poses != "poses_scan_matching.txt", -.start_radius_m, ($order | index($name)))' \
+  "$out/results" >"$out/parity.json"
+table "$out/parity.json" '.[] | [.poses, .start_radius_m, .settings, .seeds, (.position_m, .heading_deg | .mean, .least,
+  .greatest)]' poses "start m" settings seeds "position m:3" least:3 "to most:3" "heading deg:3" least:3 "to most:3" |
+  tee "$out/table.txt"

@@ -21,16 +21,14 @@ find_programs pole-simulate pole-map pole-localize pole-eval
 find_tools jq pf-localization
 library=$(find "$bin/../lib" -name 'libpolemcl.so' 2>/dev/null | head -n 1)
 [ -n "$library" ] || die "no libpolemcl.so in $bin/../lib: build first"
-mkdir -p "$1"
-out=$(cd "$1" && pwd)
+make_out "$1"
 settle=40 # scans at the start that do not count: 20 m
 radius=0.5
 turn=2
 
 draw_drive "$out/map" "$top/config/hdl32e.ini" "$world" 0 world.length_m=600
 draw_drive "$out/drive" "$top/config/hdl32e.ini" "$world" 1 world.length_m=600 simulation.drive_seed=1
-"$bin/pole-map" build --quiet --config "$out/map.ini" --input "$out/map.rawlog" --truth "$out/map.tum" \
-  --output "$out/map.polemap"
+map_drive "$out/map" "$out/map.polemap"
 "$bin/pole-eval" mrpt-truth --quiet --truth "$out/drive.tum" --output "$out/truth.txt"
 awk '!/^#/ && n++ >= settle' settle=$settle "$out/drive.tum" >"$out/settled.tum"
 awk '!/^#/ { print $2, $3, 2 * atan2($7, $8) * 57.29577951308232; exit }' "$out/drive.tum" >"$out/start"
@@ -143,10 +141,10 @@ jq -s --argjson world "$world" '
     each_scan: apart(.[0]; .[1]), half: apart(.[2]; .[3])}} |
   .each_scan_within_noise = ([.standard_errors_apart.each_scan[] | fabs < 3] | all)' "$out/rows" >"$out/result.json"
 rm "$out/rows"
-jq -r '(["filter", "position m", "sd", "RMSE m", "heading deg", "particles m", "sd"] | @tsv),
-  (.filters[] | [.name, .position_m.mean, .position_m.sd, .position_rmse_m.mean, .heading_rmse_deg.mean,
-    .particles_m.mean, .particles_m.sd] | @tsv),
-  (.standard_errors_apart | to_entries[] | "\(.key): standard errors apart \(.value)"),
-  "resampled at each scan, within Monte Carlo noise (3 standard errors): \(.each_scan_within_noise)"' \
-  "$out/result.json" >"$out/table.txt"
-cat "$out/table.txt"
+{
+  table "$out/result.json" '.filters[] | [.name, .position_m.mean, .position_m.sd, .position_rmse_m.mean,
+    .heading_rmse_deg.mean, .particles_m.mean, .particles_m.sd]' filter "position m:6" sd:6 "RMSE m:6" "heading deg:5" \
+    "particles m:6" sd:6
+  jq -r '(.standard_errors_apart | to_entries[] | "\(.key): standard errors apart \(.value)"),
+    "resampled at each scan, within Monte Carlo noise (3 standard errors): \(.each_scan_within_noise)"' "$out/result.json"
+} | tee "$out/table.txt"

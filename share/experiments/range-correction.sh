@@ -14,21 +14,18 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 check_arguments 3 3 "$@"
 data=$(cd "$1" && pwd)
 kilometre=$(cd "$2" && pwd)
-mkdir -p "$3"
-out=$(cd "$3" && pwd)
+make_out "$3"
 find_programs pole-import pole-extract
 find_tools jq
 
-# found NAME FOLDER IMPORT_OPTION...: offset and scale that fit a drive and its true poses.
+# found NAME FOLDER: offset and scale that fit a drive and its true poses.
 found() {
-  name=$1 folder=$2
-  shift 2
-  "$bin/pole-import" folder --quiet --embed --input "$folder" --output "$out/all.rawlog" "$@"
-  "$bin/pole-extract" --inspect "$out/all.rawlog" --truth "$out/all.tum" --write-config "$out/$name.ini" \
-    >"$out/$name.txt"
+  # shellcheck disable=SC2086 # several words
+  "$bin/pole-import" folder --quiet --embed --input "$2" --output "$out/all.rawlog" $clockwise
+  "$bin/pole-extract" --inspect "$out/all.rawlog" --truth "$out/all.tum" --write-config "$out/$1.ini" >"$out/$1.txt"
   sed -n 's/^range_offset_m *= *\([-0-9.]*\).*/offset_m \1/p; s/^range_scale *= *\([0-9.]*\).*/scale \1/p' \
-    "$out/$name.ini" | jq -R 'split(" ") | {(.[0]): (.[1] | tonumber)}' |
-    jq -s --arg drive "$name" '{drive: $drive} + add'
+    "$out/$1.ini" | jq -R 'split(" ") | {(.[0]): (.[1] | tonumber)}' |
+    jq -s --arg drive "$1" '{drive: $drive} + add'
   rm "$out"/all.*
 }
 
@@ -42,12 +39,9 @@ localized() {
     pos_mean, ang_mean_deg, pos_max, nees_mean, coverage_95}) | .[]' "$out/short/result.json" "$out/long/result.json"
 }
 
-turns="--turn clockwise --cut-deg 180 --stamp-turn 0.5"
 {
-  # shellcheck disable=SC2086 # several words
-  found kitti_raw_0005 "$data/kitti_raw_0005" $turns
-  # shellcheck disable=SC2086
-  found kilometre "$kilometre" $turns
+  found kitti_raw_0005 "$data/kitti_raw_0005"
+  found kilometre "$kilometre"
 } | jq -s . >"$out/found.json"
 {
   localized false sensor.range_offset_m=0 sensor.range_scale=1

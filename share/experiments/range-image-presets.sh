@@ -3,7 +3,7 @@
 # and the geometry of its image set by hand (rows, field of view; heights counted from the ground, 1.73 m more), and with no more than
 # `[extraction] method = range_image`, where the image follows `[sensor]`. A scan each 2 m, each turn standing still.
 # Usage: share/experiments/range-image-presets.sh OUT FIRST COUNT LENGTH
-#   OUT     folder for the result, table.txt
+#   OUT     gets result.json and table.txt
 #   FIRST   number of the first world, COUNT of them, LENGTH m each
 # Programs: build/bin, or POLEMCL_BIN. Needs jq.
 set -eu
@@ -12,14 +12,12 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 4 4 "$@"
-out=$1
+make_out "$1"
 first=$2
 count=$3
 length=$4
 find_tools jq
 find_programs pole-simulate pole-import pole-extract pole-eval
-mkdir -p "$out"
-out=$(cd "$out" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -31,22 +29,6 @@ extracted() {
   jq -c . "$work/score.json" >>"$work/$1.scores"
 }
 
-# row LIDAR: found poles and the share of true ones among them, by hand and by itself.
-row() {
-  for name in hand own; do
-    jq -s -r '[(map(.detections) | add), (map(.right) | add), (map(.visible) | add)] | @tsv' "$work/$name.scores"
-  done | awk -v lidar="$1" '
-    { found[NR] = $1; right[NR] = $2; visible[NR] = $3 }
-    END {
-      printf "%-12s %7d %7d %8.3f %8d %7d %8.3f %9d\n", lidar, found[1], right[1], right[1] / found[1], found[2],
-        right[2], right[2] / found[2], visible[1]
-    }'
-}
-
-{
-  echo "lidar          found   right    share    found   right    share   visible"
-  echo "               by hand                   by itself"
-} >"$out/table.txt"
 # Rows and field of view by the data sheets; half a gap beyond the outer rings, as for KITTI.
 while read -r lidar height rows up down; do
   rm -f "$work"/*.scores
@@ -56,21 +38,23 @@ while read -r lidar height rows up down; do
     range_image.max_bottom_m=3.23 range_image.min_top_m=2.43 range_image.fit_max_z_m=4.73
   printf '[sensor]\nmodel = %s\nheight_m = %s\n[extraction]\nmethod = range_image\n' "$lidar" "$height" \
     >"$work/own.ini"
-  world=$first
-  while [ "$world" -lt $((first + count)) ]; do
+  for world in $(seq "$first" $((first + count - 1))); do
     copy_settings "$work/own.ini" "$work/street.ini" simulation.spacing_m=2 "world.seed=$world" \
       "world.length_m=$length"
     "$bin/pole-simulate" --quiet --config "$work/street.ini" --output "$work/scans"
     "$bin/pole-import" folder --quiet --input "$work/scans" --output "$work/scans.rawlog"
     extracted hand
     extracted own
-    world=$((world + 1))
   done
-  row "$lidar" >>"$out/table.txt"
+  jq -n --arg lidar "$lidar" --slurpfile hand "$work/hand.scores" --slurpfile own "$work/own.scores" '
+    def sums: {found: (map(.detections) | add), right: (map(.right) | add), visible: (map(.visible) | add)};
+    {lidar: $lidar, hand: ($hand | sums), own: ($own | sums)}' >>"$out/results"
 done <<END
 vlp16 1.8 16 16 -16
 hdl32e 1.8 32 11.3 -31.3
 hdl64e 1.73 64 3 -25
 os1_64 1.8 64 16.9 -16.9
 END
-cat "$out/table.txt"
+collect_results .
+table "$out/result.json" '.[] | [.lidar, (.hand, .own | .found, .right, .right / .found), .hand.visible]' \
+  LiDAR "found by hand" right share:3 "found by itself" right share:3 visible | tee "$out/table.txt"

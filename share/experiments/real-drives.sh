@@ -26,8 +26,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 2 any "$@"
 data=$(cd "$1" && pwd)
-mkdir -p "$2"
-out=$(cd "$2" && pwd)
+make_out "$2"
 shift 2
 common="" truth="" errors=0,0 kilometre=""
 if [ "${1-}" = --kilometre ]; then
@@ -43,7 +42,7 @@ fi
 for assignment in "$@"; do common="$common --set $assignment"; done
 find_programs pole-import pole-map pole-localize pole-eval
 find_tools jq
-/usr/bin/python3 -c 'import scipy' 2>/dev/null || die "scipy is needed: install python3-scipy"
+find_modules scipy
 
 # part FOLDER FIRST LAST: the scans FIRST to LAST (from 0) as a folder of their own, with the poses of the
 # drive, or of the file $truth.
@@ -63,7 +62,7 @@ import() {
   fi
   # shellcheck disable=SC2086 # several words
   "$bin/pole-import" folder --quiet --embed --input "$out/part" --output "$here/$2.rawlog" \
-    --every "$5" --offset "$6" --sensor-pose "$mounting" --turn $turn $odometry
+    --every "$5" --offset "$6" --sensor-pose "$mounting" $turn $odometry
   rm -r "$out/part"
 }
 
@@ -106,7 +105,7 @@ drive() {
   # shellcheck disable=SC2086
   "$bin/pole-extract" --quiet --config "$3" $settings --input "$here/scans.rawlog" \
     --output "$here/scans_poles.rawlog" --csv "$here/scans.csv"
-  evaluate_runs "$here/runs" "$here/scans.tum" >/dev/null
+  evaluate_runs "$here/runs" "$here/scans.tum"
   while_ok "$here/runs" >"$here/ok.json"
   score_consistency consistency "$sigmas"
   score_consistency alone 0,0
@@ -125,7 +124,7 @@ drive() {
 # between two scans with the published and with these poses, $out/planes/spread.txt.
 adjust_by_planes() {
   here=$out/planes
-  turn=compensated
+  turn="--turn compensated"
   mkdir -p "$here"
   import "$1" published 0 100000 1 0
   # shellcheck disable=SC2086 # several words
@@ -145,57 +144,48 @@ adjust_by_planes() {
 
 # both NAME DRIVE CONFIG TURN "MAP SCANS" "SCANS": as measured, and corrected.
 both() {
-  drive "$1-raw" "$2" "$3" compensated "$5" "$6"
+  drive "$1-raw" "$2" "$3" "--turn compensated" "$5" "$6"
   drive "$1-deskewed" "$2" "$3" "$4" "$5" "$6"
 }
 
 # The three short drives.
 short_drives() {
   mounting="0 0 0 0 0 0" settings="" sigmas=0.01,0.03
-  both kitti_raw_0005 "$data/kitti_raw_0005" "$top/config/kitti.ini" "$turns" "0 79 2 0" "0 79 2 1"
+  both kitti_raw_0005 "$data/kitti_raw_0005" "$top/config/kitti.ini" "$clockwise" "0 79 2 0" "0 79 2 1"
   mounting="0 0 0 0 2.513 0.028" settings="--set sensor.height_m=1.77" sigmas=0.015,0.03
-  both vlp16_loop "$data/vlp16_loop" "$top/config/vlp16.ini" "$turns" "0 175 1 0" "176 203 1 0"
+  both vlp16_loop "$data/vlp16_loop" "$top/config/vlp16.ini" "$clockwise" "0 175 1 0" "176 203 1 0"
   mounting="0 0 0 0 0 0" settings="--set sensor.height_m=1.84 --set sensor.min_range_m=2.5" sigmas=0.08,0.23
   # Its scans are compensated: pole-extract --inspect finds no timing that fits better.
-  drive nuscenes "$data/nuscenes_scene" "$top/config/hdl32e.ini" compensated "0 38 2 0" "0 38 2 1"
+  drive nuscenes "$data/nuscenes_scene" "$top/config/hdl32e.ini" "--turn compensated" "0 38 2 0" "0 38 2 1"
   adjust_by_planes "$data/nuscenes_scene" "$top/config/hdl32e.ini"
   sigmas=0.01,0.03
-  drive nuscenes-planes "$data/nuscenes_scene" "$top/config/hdl32e.ini" compensated "0 38 2 0" "0 38 2 1"
+  drive nuscenes-planes "$data/nuscenes_scene" "$top/config/hdl32e.ini" "--turn compensated" "0 38 2 0" "0 38 2 1"
 }
 
 # Ours, and paper mode: as it is, and with its height test corrected, with least counts 1 to 3, without and with
 # correction for motion.
 half_kilometre() {
   mounting="0 0 0 0 0 0" settings="" sigmas=0.01,0.03
-  drive kilometre "$kilometre" "$top/config/kitti.ini" "$turns" "0 227 2 0" "0 227 2 1"
-  drive kilometre-paper "$kilometre" "$top/config/paper/kitti.ini" "$turns" "0 227 2 0" "0 227 2 1"
+  drive kilometre "$kilometre" "$top/config/kitti.ini" "$clockwise" "0 227 2 0" "0 227 2 1"
+  drive kilometre-paper "$kilometre" "$top/config/paper/kitti.ini" "$clockwise" "0 227 2 0" "0 227 2 1"
   for count in 1 2 3; do
     for kind in compensated auto; do
       settings="--set map.min_count=$count --set sensor.turn=$kind"
-      drive "kilometre-paper-mended-$count-$kind" "$kilometre" "$top/config/paper/kitti-mended.ini" "$turns" \
+      drive "kilometre-paper-mended-$count-$kind" "$kilometre" "$top/config/paper/kitti-mended.ini" "$clockwise" \
         "0 227 2 0" "0 227 2 1"
     done
   done
   settings=""
   motions=$out/laser.txt
   /usr/bin/python3 "$top/share/experiments/planar_motions.py" "$data/kitti_odom_00_km/laser_odometry.txt" "$motions"
-  drive kilometre-laser "$kilometre" "$top/config/kitti.ini" "$turns" "0 227 2 0" "0 227 2 1"
+  drive kilometre-laser "$kilometre" "$top/config/kitti.ini" "$clockwise" "0 227 2 0" "0 227 2 1"
 }
 
-: >"$out/results"
-# These LiDARs turn clockwise, begin at the back, and are stamped when they face forward.
-turns="clockwise --cut-deg 180 --stamp-turn 0.5"
 motions=""
 if [ -n "$kilometre" ]; then half_kilometre; else short_drives; fi
 
-jq -s . "$out/results" >"$out/result.json"
-rm "$out/results"
-jq -r '.[] | [.drive, .map_poles, .pos_mean, .pos_least, .pos_most, .ang_mean_deg, .pos_max, .ok,
-    .mean_ok_m, .mean_ok_deg, .worst_ok_m, .worst_ok_deg, .nees_mean, .coverage_95, .nees_alone, .coverage_95_alone] | @tsv' "$out/result.json" |
-  awk -F '\t' 'BEGIN {
-      format = "%-24s %9s %8s %17s %8s %8s %6s %16s %16s %6s %9s %6s %9s\n"
-      printf format, "drive", "map poles", "mean m", "(least to most)", "mean deg", "worst m", "ok",
-        "mean ok, m deg", "worst ok, m deg", "NEES", "coverage", "alone", "coverage" }
-    { printf "%-24s %9d %8.4f %8.4f %8.4f %8.4f %8.4f %6.2f %8.4f %7.4f %8.4f %7.4f %6.2f %9.3f %6.2f %9.3f\n", $1, $2,
-        $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16 }' >"$out/table.txt"
-cat "$out/table.txt"
+collect_results .
+table "$out/result.json" '.[] | [.drive, .map_poles, .pos_mean, .pos_least, .pos_most, .ang_mean_deg, .pos_max, .ok,
+  .mean_ok_m, .mean_ok_deg, .worst_ok_m, .worst_ok_deg, .nees_mean, .coverage_95, .nees_alone, .coverage_95_alone]' \
+  drive "map poles" "mean m:4" "least:4" "to most:4" "mean deg:4" "worst m:4" ok:2 "mean ok m:4" "mean ok deg:4" \
+  "worst ok m:4" "worst ok deg:4" NEES:2 coverage:3 "NEES alone:2" "coverage:3" | tee "$out/table.txt"

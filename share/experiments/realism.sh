@@ -15,14 +15,13 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/extraction-parts.sh"
 
 check_arguments 1 any "$@"
-out=$1
+make_out "$1"
 sensor=${2-hdl32e}
 shift
 [ $# = 0 ] || shift
 seeds=${*:-321 322}
 find_tools jq
 find_programs pole-simulate pole-eval
-mkdir -p "$out"
 : >"$out/scores"
 
 for scale in 0 0.5 1 2; do
@@ -47,6 +46,5 @@ jq -s --arg sensor "$sensor" --arg worlds "$seeds" '
      | {scale: .[0].scale, detections: $detections, visible: $visible, precision: ($p | digits),
         recall: ($r | digits), f1: (2 * $p * $r / ($p + $r) | digits)}))}' "$out/scores" >"$out/result.json"
 rm "$out/scores"
-jq -r '["scale", "precision", "recall", "F1"], (.scales[] | [.scale, .precision, .recall, .f1]) | @tsv' \
-  "$out/result.json" | awk -F '\t' '{ printf "%-6s %10s %8s %8s\n", $1, $2, $3, $4 }' >"$out/table.txt"
-cat "$out/table.txt"
+table "$out/result.json" '.scales[] | [.scale, .precision, .recall, .f1]' scale precision:4 recall:4 F1:4 |
+  tee "$out/table.txt"

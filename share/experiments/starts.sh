@@ -14,14 +14,12 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 4 "$@"
-out=$1
+make_out "$1"
 first=${2:-771}
 worlds=${3:-4}
 trials=${4:-100}
 find_programs pole-simulate pole-map pole-localize pole-eval
 find_tools jq
-mkdir -p "$out"
-: >"$out/results"
 
 # try_starts WORLD REPLACED SPACING FAR_OUTLIER: adds a line to OUT/results.
 try_starts() {
@@ -36,11 +34,9 @@ try_starts() {
 
 usual=$("$bin/pole-localize" --print-config --all --config "$top/config/hdl32e.ini" |
   sed -n 's/^far_outlier = \([0-9.]*\).*/\1/p')
-world=$first
-while [ "$world" -lt $((first + worlds)) ]; do
+for world in $(seq "$first" $((first + worlds - 1))); do
   draw_drive "$out/$world" "$top/config/hdl32e.ini" "$world" 0 world.length_m=600
-  "$bin/pole-map" build --quiet --config "$out/$world.ini" --input "$out/$world.rawlog" \
-    --truth "$out/$world.tum" --output "$out/$world.polemap"
+  map_drive "$out/$world" "$out/$world.polemap"
   for replaced in 0 0.5; do
     for spacing in 0.5 8; do
       draw_drive "$out/$world-$replaced-$spacing" "$top/config/hdl32e.ini" "$world" 365 \
@@ -49,19 +45,13 @@ while [ "$world" -lt $((first + worlds)) ]; do
       for far in 1 "$usual"; do try_starts "$world" "$replaced" "$spacing" "$far"; done
     done
   done
-  world=$((world + 1))
 done
 
-jq -s 'group_by([.replaced, .spacing_m, -.far_outlier]) | map({replaced: .[0].replaced, spacing_m: .[0].spacing_m,
+collect_results 'group_by([.replaced, .spacing_m, -.far_outlier]) | map({replaced: .[0].replaced, spacing_m: .[0].spacing_m,
     far_outlier: .[0].far_outlier, trials: (map(.trials) | add), right: (map(.right) | add),
     ok_wrong: (map(.ok_wrong) | add), mean_m: (map(.mean_m) | add / length),
     worst_world_m: (map(.mean_m) | max), right_metres_p95: (map(.right_metres_p95) | max),
-    right_metres_max: (map(.right_metres_max) | max), worlds: .})' "$out/results" >"$out/result.json"
-rm "$out/results"
-{
-  echo 'replaced  spacing m  far_outlier  starts  right  ok wrong   mean m  worst world  right after, 95 %  worst'
-  jq -r '.[] | [.replaced, .spacing_m, .far_outlier, .trials, .right, .ok_wrong, .mean_m, .worst_world_m,
-      .right_metres_p95, .right_metres_max] | @tsv' "$out/result.json" |
-    awk '{ printf "%8s %10s %12s %7d %6d %9d %8.4f %12.4f %15.1f m %6.1f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }'
-} >"$out/table.txt"
-cat "$out/table.txt"
+    right_metres_max: (map(.right_metres_max) | max), worlds: .})'
+table "$out/result.json" '.[] | [.replaced, .spacing_m, .far_outlier, .trials, .right, .ok_wrong, .mean_m, .worst_world_m,
+  .right_metres_p95, .right_metres_max]' replaced "spacing m" far_outlier starts right "ok wrong" "mean m:4" \
+  "worst world:4" "right after m, 95 %:1" "worst:1" | tee "$out/table.txt"

@@ -27,10 +27,9 @@ quick=no
 }
 check_arguments 2 2 "$@"
 data=$1
-out=$2
 find_programs pole-simulate pole-eval
-/usr/bin/python3 -c 'import sklearn' 2>/dev/null || die "scikit-learn is needed: install python3-sklearn"
-mkdir -p "$out"
+find_modules sklearn
+make_out "$2"
 
 # The shipped weights were fitted before kitti.ini corrected ranges.
 ranges="--set sensor.range_offset_m=0 --set sensor.range_scale=1"

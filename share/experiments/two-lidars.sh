@@ -15,8 +15,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 4 "$@"
-mkdir -p "$1"
-out=$(cd "$1" && pwd)
+make_out "$1"
 first=${2:-861}
 last=$((first + ${3:-3} - 1))
 length=${4:-200}
@@ -50,9 +49,7 @@ score() {
       apart_sigmas: .lidars[-1].apart_sigmas}' "$here/$name/summary.json" >>"$out/results"
 }
 
-: >"$out/results"
-world=$first
-while [ "$world" -le "$last" ]; do
+for world in $(seq "$first" "$last"); do
   here=$out/$world
   mkdir -p "$here"
   for day in 0 1; do
@@ -73,15 +70,10 @@ while [ "$world" -le "$last" ]; do
   score stern-moved-0.1-m two --set "sensor:stern.pose=0 0.1 0 0 0 0"
   score stern-turned-1-deg two --set "sensor:stern.pose=0 0 0 1 0 0"
   score stern-clock-0.05-s two --set sensor:stern.clock_offset_s=0.05
-  world=$((world + 1))
 done
-jq -s 'group_by(.name) | map({name: .[0].name, worlds: length, pos_mean: (map(.pos_mean) | add / length),
+collect_results 'group_by(.name) | map({name: .[0].name, worlds: length, pos_mean: (map(.pos_mean) | add / length),
   worst_world_m: (map(.pos_mean) | max), ang_mean_deg: (map(.ang_mean_deg) | add / length),
   poles_per_scan: (map(.poles_per_scan) | add / length), apart_m: (map(.apart_m) | add / length),
-  apart_sigmas: (map(.apart_sigmas) | add / length)})' "$out/results" >"$out/result.json"
-rm "$out/results"
-jq -r '.[] | [.name, .pos_mean, .worst_world_m, .ang_mean_deg, .poles_per_scan, .apart_m, .apart_sigmas] | @tsv' \
-  "$out/result.json" | awk -F '\t' 'BEGIN { printf "%-20s %8s %12s %9s %11s %8s %12s\n", "LiDARs", "mean m",
-      "worst world", "mean deg", "poles/scan", "apart m", "apart sigma" }
-    { printf "%-20s %8.4f %12.4f %9.4f %11.1f %8.3f %12.1f\n", $1, $2, $3, $4, $5, $6, $7 }' >"$out/table.txt"
-cat "$out/table.txt"
+  apart_sigmas: (map(.apart_sigmas) | add / length)})'
+table "$out/result.json" '.[] | [.name, .pos_mean, .worst_world_m, .ang_mean_deg, .poles_per_scan, .apart_m, .apart_sigmas]' \
+  LiDARs "mean m:4" "worst world:4" "mean deg:4" "poles/scan:1" "apart m:3" "apart sigma:1" | tee "$out/table.txt"

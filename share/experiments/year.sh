@@ -15,12 +15,11 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 check_arguments 1 3 "$@"
-out=$1
+make_out "$1"
 world=${2:-500}
 runs=${3:-10}
 find_programs pole-batch pole-map pole-eval
 find_tools jq
-mkdir -p "$out"
 batch=$out/batch
 tasks=$batch/tasks
 config=$top/config/hdl32e.ini
@@ -45,8 +44,8 @@ near() {
 score() {
   poles=$tasks/poles.$2/$2_poles_gt.csv
   near "$poles" "$tasks/poles.may/may.tum" >"$out/near.csv"
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$poles" --map "$3" --json "$out/all.json"
-  "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$out/near.csv" --map "$3" --json "$out/near.json"
+  score_map 0.5 "$poles" "$3" "$out/all.json"
+  score_map 0.5 "$out/near.csv" "$3" "$out/near.json"
   jq -n --arg setting "$1" --arg month "$2" --slurpfile all "$out/all.json" --slurpfile near "$out/near.json" \
     '$all[0] as $a | $near[0] as $n | {setting: $setting, month: $month, poles: $a.map_poles,
       precision: $a.precision, recall: $n.recall, f1: (2 * $a.precision * $n.recall / ($a.precision + $n.recall)),
@@ -77,16 +76,12 @@ awk -F , 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
       $(at["pos_mean"]), $(at["ok_share"]), $(at["lost"]) }' "$batch/sessions.csv" |
   jq -s '{sessions: ., mean: (group_by(.setting) | map({setting: .[0].setting,
     pos_mean_m: (map(.pos_mean_m) | add / length), last_to_first: (.[-1].pos_mean_m / .[0].pos_mean_m)}))}' \
-  >"$out/errors.json"
+    >"$out/errors.json"
 jq -s '.[0] + .[1]' "$out/maps.json" "$out/errors.json" >"$out/result.json"
 rm "$out/maps" "$out/maps.json" "$out/errors.json" "$out/all.json" "$out/near.json" "$out/near.csv" "$out/truth.polemap"
 {
-  jq -r '.maps[] | [.setting, .month, .poles, .precision, .recall, .f1, .f1_all, .shift_m, .rotation_deg] | @tsv' \
-    "$out/result.json" | sort -s -t "$(printf '\t')" -k1,1 | awk -F '\t' 'BEGIN {
-        format = "%-7s %-10s %5s %9s %8s %8s %8s %9s %9s\n"
-        printf format, "map", "month", "poles", "precision", "recall", "F1", "F1 all", "shift m", "turn deg" }
-      { printf "%-7s %-10s %5d %9.4f %8.4f %8.4f %8.4f %9.4f %9.5f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9 }'
+  table "$out/result.json" '.maps | sort_by(.setting)[] | [.setting, .month, .poles, .precision, .recall, .f1, .f1_all,
+    .shift_m, .rotation_deg]' map month poles precision:4 recall:4 F1:4 "F1 all:4" "shift m:4" "turn deg:5"
   jq -r '.mean[] | "\(.setting): mean error \(.pos_mean_m) m, last session to first \(.last_to_first)"' \
     "$out/result.json"
-} >"$out/table.txt"
-cat "$out/table.txt"
+} | tee "$out/table.txt"

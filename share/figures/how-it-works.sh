@@ -33,13 +33,11 @@ street() {
   draw_drive "$out/$name" "$top/config/hdl32e.ini" 500 "$day" "world.length_m=$length" world.side_streets=1 \
     world.removed_share=0 world.added_share=0 world.replaced_per_year=0.4 world.day_of_year=135 \
     "simulation.drive_seed=$day" "$@"
-  "$bin/pole-map" build --quiet --config "$out/$name.ini" --input "$out/$name.rawlog" \
-    --truth "$out/$name.tum" --output "$out/$name.polemap" >/dev/null
+  map_drive "$out/$name" "$out/$name.polemap"
 }
 street may 0 800
 street october 152 800 simulation.detour=1
-"$bin/pole-localize" --quiet --config "$out/october.ini" --input "$out/october.rawlog" --map "$out/may.polemap" \
-  --truth "$out/october.tum" --output "$out/run" --seed 1 --global --frames "$out/frames" --frame-every 10 >/dev/null
+localize_drive "$out/october" "$out/may.polemap" "$out/run" --seed 1 --global --frames "$out/frames" --frame-every 10
 cp "$out/frames/000010.png" "$pictures/particles.png"
 python3 "$top/share/figures/plots.py" health "$out/run/run_00_health.csv" "$pictures/health.svg"
 python3 "$top/share/figures/plots.py" year "$top/share/reports/year.json" "$pictures/year.svg"

@@ -16,8 +16,7 @@ trap 'rm -rf "$out"' EXIT
 for day in 0 1; do
   draw_drive "$out/day$day" "$top/config/hdl32e.ini" 7 $day world.length_m=400 simulation.spacing_m=1
 done
-"$bin/pole-map" build --quiet --config "$out/day0.ini" --input "$out/day0.rawlog" \
-  --truth "$out/day0.tum" --output "$out/map.polemap" >/dev/null
+map_drive "$out/day0" "$out/map.polemap"
 "$bin/pole-localize" --quiet --config "$out/day1.ini" --input "$out/day1.rawlog" --global \
   --map "$out/map.polemap" --output "$out/run" --seed 1 --frames "$out/frames" >/dev/null
 
