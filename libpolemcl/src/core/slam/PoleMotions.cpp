@@ -19,13 +19,18 @@ constexpr int kMinPairsNear = 2, kMinPairs = 3;  // near the motion before; sear
 constexpr double kMinShare = 0.4;                // of the poles of the scan with fewer, paired
 constexpr double kSigma = 0.05, kShare = 0.05, kTurnSigma = 0.01;  // m, of the way, rad
 constexpr double kAcceleration = 3, kTurnAcceleration = 0.5;       // m/s², rad/s², while coasting
+constexpr double kLags[] = {0, 0.3, 1};  // of the window: the scans compared with
 /// A motion of the odometry is wrong if another motion meets three conditions. It has at least this
 /// number of pairs:
 constexpr int kPairsAgainst = 4;
 /// Its score is greater by this factor, so that poles seen for the first time do not decide:
 constexpr double kClearly = 1.5;
-/// It differs by more than the odometry of a healthy vehicle errs: m and rad, and share of both:
+/// It differs by more than the odometry of a healthy vehicle errs: m and rad, and share of both;
+/// and by more than three standard deviations that the odometry states, where these are small:
 constexpr double kSlip = 0.3, kTurnSlip = 0.05, kSlipShare = 0.1;
+constexpr double kStated = 3, kMostStated = 0.5, kMostTurnStated = 0.2;  // sigmas, m, rad
+/// Share of these limits until odometry and poles agree again over a whole window:
+constexpr double kDoubted = 1.0 / 3;
 
 /// Poles as seen at the time of their scan.
 std::vector<PoleDetection> stillPoles(const PoleScan& scan, const Velocity& velocity) {
@@ -36,17 +41,15 @@ std::vector<PoleDetection> stillPoles(const PoleScan& scan, const Velocity& velo
 
 class MotionFiller {
  public:
-  explicit MotionFiller(std::vector<PoleScan>& scans) : m_scans(scans), m_poses(scans.size()) {}
+  explicit MotionFiller(std::vector<PoleScan>& scans)
+      : m_scans(scans), m_poses(scans.size()), m_spent(scans.size(), Eigen::Matrix3d::Zero()) {}
 
   FilledMotions run() {
     for (std::size_t i = 0; i < m_scans.size(); ++i) {
-      if (i > 0) {
-        if (m_scans[i].motion)
-          take(i);
-        else
-          ++(fill(i) ? m_filled.byPoles : m_filled.coasted);
-        m_poses[i] = compose(m_poses[i - 1], m_scans[i].motion->mean);
-      }
+      const bool isTold = m_scans[i].motion.has_value();
+      m_isTold.push_back(isTold);
+      if (i > 0 && isTold) take(i);
+      if (i > 0 && !isTold) ++(fill(i) ? m_filled.byPoles : m_filled.coasted);
       m_poles.push_back(stillPoles(m_scans[i], m_velocity.value_or(Velocity())));
     }
     m_filled.all =
@@ -55,57 +58,110 @@ class MotionFiller {
   }
 
  private:
-  double secondsTo(std::size_t i) const { return m_scans[i].time - m_scans[i - 1].time; }
+  double secondsFrom(std::size_t before, std::size_t i) const {
+    return m_scans[i].time - m_scans[before].time;
+  }
+  double secondsTo(std::size_t i) const { return secondsFrom(i - 1, i); }
+
+  void move(std::size_t i, const PoseWithCovariance& motion) {
+    m_scans[i].motion = motion;
+    m_poses[i] = compose(m_poses[i - 1], motion.mean);
+    m_spent[i] = m_spent[i - 1] + motion.covariance;
+  }
 
   /// The first velocity is that of all motions before, too.
   void learnVelocity(std::size_t i, const Velocity& velocity) {
     for (std::size_t k = 1; k < i && !m_velocity; ++k) {
       const Pose2D motion = motionAfter(velocity, secondsTo(k));
-      m_scans[k].motion = PoseWithCovariance{motion, covarianceOf(motion, secondsTo(k))};
-      m_poses[k] = compose(m_poses[k - 1], motion);
+      move(k, {motion, covarianceOf(motion, secondsTo(k))});
     }
     m_velocity = velocity;
   }
 
   enum class Verdict { open, borneOut, contradicted };
+  struct Judgement {
+    Verdict verdict = Verdict::open;
+    Pose2D motion;  ///< by the poles
+  };
 
-  /// What poles of this scan and the one before say of the motion of the odometry. Another one is
-  /// sought near it and near the motion that they told last, not farther off: alike poles would
-  /// fit.
-  Verdict judge(std::size_t i) const {
-    const double seconds = secondsTo(i);
-    const Pose2D& told = m_scans[i].motion->mean;
-    const Velocity velocity = m_seen.value_or(velocityOf(told, seconds));
-    const std::vector<PoleDetection>& before = m_poles[i - 1];
-    const std::vector<PoleDetection> now = stillPoles(m_scans[i], velocity);
-    ScanRegistration found = refineMotion(before, now, told, {});
-    if (!isEnough(found, before, now, kPairsAgainst))
-      found = m_seen ? refineMotion(before, now, motionAfter(velocity, seconds), {})
-                     : searchMotion(before, now, {}, limitsOver(seconds));
-    if (!isEnough(found, before, now, kPairsAgainst)) return Verdict::open;
-    if (!isSlip(told, found.motion)) return Verdict::borneOut;
-    const bool clear = found.score > kClearly * judgeMotion(before, now, told, {}).score;
-    return clear ? Verdict::contradicted : Verdict::open;
+  /// The scans that a scan is compared with, the latest first. A slip adds up over a second.
+  std::vector<std::size_t> compared(std::size_t i) const {
+    std::vector<std::size_t> result;
+    for (const double lag : kLags) {
+      std::size_t before = i - 1;
+      while (before > 0 && secondsFrom(before - 1, i) <= lag * kWindow + 1e-6) --before;
+      if (result.empty() || result.back() != before) result.push_back(before);
+    }
+    return result;
   }
 
-  static bool isSlip(const Pose2D& told, const Pose2D& found) {
+  /// What poles of this scan and an earlier one say of the motion of the odometry. Another one is
+  /// sought near it and near the motion that they told last, not farther off: alike poles would
+  /// fit.
+  Judgement judge(std::size_t before, std::size_t i) const {
+    const double seconds = secondsFrom(before, i);
+    const Pose2D told = relative(m_poses[before], m_poses[i]);
+    const bool isSeen = m_seen && m_scans[before].time - m_seenTime <= kLongestCoast;
+    const Velocity velocity = isSeen ? *m_seen : velocityOf(told, seconds);
+    const std::vector<PoleDetection>& then = m_poles[before];
+    const std::vector<PoleDetection> now = stillPoles(m_scans[i], velocity);
+    ScanRegistration found = refineMotion(then, now, told, {});
+    if (!isEnough(found, then, now, kPairsAgainst))
+      found = isSeen ? refineMotion(then, now, motionAfter(velocity, seconds), {})
+                     : searchMotion(then, now, {}, limitsOver(seconds));
+    if (!isEnough(found, then, now, kPairsAgainst)) return {};
+    if (!isSlip(told, found.motion, m_spent[i] - m_spent[before]))
+      return {Verdict::borneOut, found.motion};
+    const bool clear = found.score > kClearly * judgeMotion(then, now, told, {}).score;
+    return {clear ? Verdict::contradicted : Verdict::open, found.motion};
+  }
+
+  bool isSlip(const Pose2D& told, const Pose2D& found, const Eigen::Matrix3d& stated) const {
     const Pose2D off = relative(found, told);
-    return std::hypot(off.x, off.y) > kSlip + kSlipShare * std::hypot(found.x, found.y) ||
-           std::abs(off.yaw) > kTurnSlip + kSlipShare * std::abs(found.yaw);
+    const double metres = std::min(kStated * std::sqrt(stated(0, 0) + stated(1, 1)), kMostStated);
+    const double turn = std::min(kStated * std::sqrt(stated(2, 2)), kMostTurnStated);
+    const double share = m_isDoubted ? kDoubted : 1;
+    const double way = std::hypot(found.x, found.y);
+    return std::hypot(off.x, off.y) > share * (kSlip + kSlipShare * way) + metres ||
+           std::abs(off.yaw) > share * (kTurnSlip + kSlipShare * std::abs(found.yaw)) + turn;
   }
 
   /// A motion of the odometry, unless the poles contradict it.
   void take(std::size_t i) {
-    const Verdict verdict = judge(i);
-    if (verdict == Verdict::contradicted) {
-      if (m_filled.contradicted++ == 0) m_filled.firstContradicted = m_scans[i].time;
-      m_scans[i].motion.reset();
-      fill(i);
-      return;
+    move(i, *m_scans[i].motion);
+    Verdict verdict = Verdict::open;  // over the longest time
+    for (const std::size_t before : compared(i)) {
+      const Judgement judged = judge(before, i);
+      verdict = judged.verdict;
+      if (verdict == Verdict::contradicted) return replace(before, i, judged.motion);
+      if (verdict == Verdict::borneOut) see(i, velocityOf(judged.motion, secondsFrom(before, i)));
     }
+    if (verdict == Verdict::borneOut) m_isDoubted = false;
     learnVelocity(i, velocityOf(m_scans[i].motion->mean, secondsTo(i)));
-    if (verdict == Verdict::borneOut) m_seen = m_velocity;
     m_coasted = 0;
+  }
+
+  void see(std::size_t i, const Velocity& velocity) {
+    m_seen = velocity;
+    m_seenTime = m_scans[i].time;
+  }
+
+  /// The poles tell the way from an earlier scan anew, so that it ends where they say.
+  void replace(std::size_t before, std::size_t i, const Pose2D& found) {
+    if (m_filled.contradicted == 0) m_filled.firstContradicted = m_scans[before + 1].time;
+    m_isDoubted = true;
+    m_coasted = 0;
+    m_velocity = velocityOf(found, secondsFrom(before, i));
+    const Pose2D end = compose(m_poses[before], found);
+    for (std::size_t k = before + 1; k <= i; ++k) {
+      m_filled.contradicted += m_isTold[k];
+      m_isTold[k] = false;
+      if (k < i) fill(k);
+    }
+    const Pose2D last = relative(m_poses[i - 1], end);
+    move(i, {last, covarianceOf(last, 0)});
+    learnVelocity(i, velocityOf(last, secondsTo(i)));
+    see(i, velocityOf(found, secondsFrom(before, i)));
   }
 
   /// \return Whether the poles told the motion; else the motion before goes on.
@@ -121,14 +177,14 @@ class MotionFiller {
       const Pose2D motion =
           isFirst ? motionAfter(*m_velocity, seconds) : relative(m_poses[i - 1], found->pose);
       const double doubt = found->pairs < kMinPairs ? m_coasted + seconds : m_coasted;
-      m_scans[i].motion = PoseWithCovariance{motion, covarianceOf(motion, doubt)};
+      move(i, {motion, covarianceOf(motion, doubt)});
       m_coasted = 0;
-      m_seen = m_velocity;
+      see(i, *m_velocity);
       return true;
     }
     m_coasted += seconds;
     if (m_coasted > kLongestCoast) refuse(i);
-    m_scans[i].motion = PoseWithCovariance{guess, covarianceOf(guess, m_coasted)};
+    move(i, {guess, covarianceOf(guess, m_coasted)});
     return false;
   }
 
@@ -191,11 +247,15 @@ class MotionFiller {
   }
 
   std::vector<PoleScan>& m_scans;
+  std::vector<bool> m_isTold;                       ///< by the odometry, and not contradicted
   std::vector<Pose2D> m_poses;                      ///< in the frame of the first
+  std::vector<Eigen::Matrix3d> m_spent;             ///< sums of the covariances of the motions
   std::vector<std::vector<PoleDetection>> m_poles;  ///< of each scan, when it was taken
   std::optional<Velocity> m_velocity;               ///< by the last motion that was told
-  std::optional<Velocity> m_seen;                   ///< by the last motion that poles told, too
-  double m_coasted = 0;  ///< s, since poles or odometry last told the motion
+  std::optional<Velocity> m_seen;                   ///< by the last motion that poles told
+  double m_seenTime = 0;
+  bool m_isDoubted = false;  ///< the odometry, since poles contradicted it
+  double m_coasted = 0;      ///< s, since poles or odometry last told the motion
   FilledMotions m_filled;
 };
 

@@ -26,9 +26,10 @@ struct FilledMotions {
 /// odometry, 5 cm + 5 % and 0.6°, more where nothing corrects it: the poles themselves are used
 /// again by mapDrives().
 ///
-/// A motion of the odometry that the poles clearly contradict is taken as missing: a wheel slipped,
-/// or the odometry started anew. Errors up to 0.3 m + 10 % and 0.05 rad + 10 % stay, and so do
-/// motions that fewer than four common poles contradict.
+/// Motions of the odometry that the poles clearly contradict, from scan to scan or over up to a
+/// second, are told by the poles: a wheel slipped, or the odometry started anew. Errors up to
+/// 0.3 m + 10 % and 0.05 rad + 10 % in that time stay (a third, until both agree again over a
+/// second), and so do motions that fewer than four common poles contradict.
 /// \throws Error naming the scan where too few poles told the motion over 2 s.
 FilledMotions fillMotions(std::vector<PoleScan>& scans);
 
