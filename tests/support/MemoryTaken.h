@@ -1,6 +1,7 @@
 #pragma once
 /// \brief Measures the peak memory of a piece of work. Replaces `new` and `delete` of a test
-/// program and of the library it loads: include it in one source file of a program only.
+/// program and of the library it loads: include it in one source file of a program only. Under the
+/// thread sanitizer, whose library has these operators, nothing is measured.
 
 #include <malloc.h>
 
@@ -38,6 +39,7 @@ std::size_t memoryTakenBy(Work work) {
 
 }  // namespace polemcl::tests
 
+#ifndef __SANITIZE_THREAD__
 void* operator new(std::size_t size) {
   return polemcl::tests::takeMemory(size);
 }
@@ -62,3 +64,4 @@ void operator delete(void* memory, std::size_t) noexcept {
 void operator delete[](void* memory, std::size_t) noexcept {
   polemcl::tests::giveMemory(memory);
 }
+#endif
