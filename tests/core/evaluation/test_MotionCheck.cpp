@@ -66,6 +66,22 @@ TEST(MotionCheck, TellsAStepAndWhereItIs) {
     }
 }
 
+/// The scans 100 and 104 tell the step, those beside them confirm it.
+TEST(MotionCheck, ScansWithFewPolesDoNotDenyAStep) {
+  const auto steps = [](const std::vector<std::size_t>& poor) {
+    std::vector<SessionScan> scans = drive(4);
+    for (std::size_t i = 101; i < scans.size(); ++i) scans[i].pose_map_robot.x += 0.5;
+    for (const std::size_t i : poor) scans[i].poles_robot.resize(3);
+    return checkMotion(scans).steps();
+  };
+  EXPECT_EQ(steps({}), 1u);
+  EXPECT_EQ(steps({99}), 1u);
+  EXPECT_EQ(steps({98, 99, 105}), 1u);
+  EXPECT_EQ(steps({97, 98, 99}), 1u) << "one side is enough";
+  EXPECT_EQ(steps({105, 106, 107}), 1u);
+  EXPECT_EQ(steps({97, 98, 99, 105, 106, 107}), 0u) << "nothing confirms it";
+}
+
 /// One scan whose poles are paired wrongly is no step.
 TEST(MotionCheck, WhatOtherScansDoNotConfirmIsNoStep) {
   std::vector<SessionScan> scans = drive(3);

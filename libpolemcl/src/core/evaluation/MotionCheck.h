@@ -46,7 +46,8 @@ class MotionCheck {
 bool contradictsClearly(const ScanRegistration& poles, const Pose2D& truth);
 
 /// \brief Each fourth scan with the fourth after it. Where these contradict clearly, the scans
-/// beside them must tell the same, else it was a wrong pairing of poles.
+/// beside them must tell the same, else it was a wrong pairing of poles. Those with fewer than four
+/// pairs tell nothing.
 MotionCheck checkMotion(const std::vector<SessionScan>& scans);
 
 }  // namespace polemcl
