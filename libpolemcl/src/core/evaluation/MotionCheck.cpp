@@ -87,7 +87,8 @@ ScanRegistration motionOfPoles(const std::vector<PoleDetection>& before,
   if (2 * static_cast<std::size_t>(near.pairs) >= std::min(before.size(), after.size()))
     return near;
   const ScanRegistration far = searchMotion(before, after, truth, options);
-  return far.pairs > s_leastPairs && far.score > s_clearly * near.score ? far : near;
+  const bool isBetter = far.pairs > s_leastPairs && far.score > s_clearly * near.score;
+  return isBetter && !isShiftedRow(before, after, far, truth) ? far : near;
 }
 
 bool contradictsClearly(const ScanRegistration& poles, const Pose2D& truth) {
