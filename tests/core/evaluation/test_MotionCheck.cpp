@@ -10,21 +10,19 @@ namespace {
 
 using tests::Dice;
 
-/// 100 m straight on, a scan each 0.1 s and 0.5 m, poles on both sides.
-std::vector<SessionScan> drive(std::uint64_t seed) {
-  Dice dice(seed);
-  std::vector<Eigen::Vector2d> poles;
-  for (double x = -30; x < 130; x += dice.uniform(4, 9))
-    poles.emplace_back(x, (dice.uniform() < 0.5 ? -1 : 1) * dice.uniform(4, 9));
+using Places = std::vector<Eigen::Vector2d>;
+
+/// 200 scans straight on, one each 0.1 s. \param step m, between two. \param missed Share of poles.
+std::vector<SessionScan> driveAlong(const Places& poles, double step, double missed, Dice& dice) {
   std::vector<SessionScan> scans;
   for (int i = 0; i < 200; ++i) {
     SessionScan scan;
     scan.time = 100 + 0.1 * i;
-    scan.pose_map_robot = {0.5 * i, 0, 0};
+    scan.pose_map_robot = {step * i, 0, 0};
     for (const Eigen::Vector2d& pole : poles) {
-      if (std::abs(pole.x() - 0.5 * i) > 25 || dice.uniform() < 0.1) continue;
+      if (std::abs(pole.x() - step * i) > 25 || dice.uniform() < missed) continue;
       PoleDetection seen;
-      seen.x = pole.x() - 0.5 * i + 0.02 * dice.normal();
+      seen.x = pole.x() - step * i + 0.02 * dice.normal();
       seen.y = pole.y() + 0.02 * dice.normal();
       seen.covariance = 4e-4 * Eigen::Matrix2d::Identity();
       seen.confidence = 1;
@@ -33,6 +31,15 @@ std::vector<SessionScan> drive(std::uint64_t seed) {
     scans.push_back(scan);
   }
   return scans;
+}
+
+/// 100 m with poles on both sides.
+std::vector<SessionScan> drive(std::uint64_t seed) {
+  Dice dice(seed);
+  Places poles;
+  for (double x = -30; x < 130; x += dice.uniform(4, 9))
+    poles.emplace_back(x, (dice.uniform() < 0.5 ? -1 : 1) * dice.uniform(4, 9));
+  return driveAlong(poles, 0.5, 0.1, dice);
 }
 
 }  // namespace
@@ -63,6 +70,34 @@ TEST(MotionCheck, TellsAStepAndWhereItIs) {
       std::snprintf(share, sizeof share, "in 1 of %zu stretches", check.told());
       for (const char* part : {time, share})
         EXPECT_NE(check.verdict().find(part), std::string::npos) << check.verdict();
+    }
+}
+
+/// The scans 100 and 104 tell the step, those beside them confirm it.
+TEST(MotionCheck, ScansWithFewPolesDoNotDenyAStep) {
+  const auto steps = [](const std::vector<std::size_t>& poor) {
+    std::vector<SessionScan> scans = drive(4);
+    for (std::size_t i = 101; i < scans.size(); ++i) scans[i].pose_map_robot.x += 0.5;
+    for (const std::size_t i : poor) scans[i].poles_robot.resize(3);
+    return checkMotion(scans).steps();
+  };
+  EXPECT_EQ(steps({}), 1u);
+  EXPECT_EQ(steps({99}), 1u);
+  EXPECT_EQ(steps({98, 99, 105}), 1u);
+  EXPECT_EQ(steps({97, 98, 99}), 1u) << "one side is enough";
+  EXPECT_EQ(steps({105, 106, 107}), 1u);
+  EXPECT_EQ(steps({97, 98, 99, 105, 106, 107}), 0u) << "nothing confirms it";
+}
+
+/// The posts of a rail, half of them seen: the row fits as well, or better, a post farther on.
+TEST(MotionCheck, ARowOfPostsIsNoStep) {
+  for (const double distance : {2.0, 4.0})
+    for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+      Dice dice(seed);
+      Places row;
+      for (double x = -30; x < 430; x += distance) row.emplace_back(x, -6);
+      const MotionCheck check = checkMotion(driveAlong(row, 2, 0.7, dice));
+      EXPECT_EQ(check.steps(), 0u) << distance << ' ' << seed;
     }
 }
 

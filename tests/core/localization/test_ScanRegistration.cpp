@@ -120,4 +120,18 @@ TEST(ScanRegistration, NothingInCommonGivesNoPairs) {
   EXPECT_EQ(judgeMotion(kStreet, kStreet, {}, {}).pairs, 5);
 }
 
+TEST(ScanRegistration, ARowThatMayBeShiftedIsNoticed) {
+  Poles row;
+  for (int i = -4; i < 5; ++i) row.push_back(pole(4 * i, -6));
+  const auto isShifted = [](const Poles& before, double metres, double other) {
+    ScanRegistration found;
+    found.motion.x = metres;
+    found.pairs = static_cast<int>(before.size());
+    return isShiftedRow(before, after(before, found.motion), found, {other, 0, 0});
+  };
+  for (const double other : {-2.0, 6.0, 10.0}) EXPECT_TRUE(isShifted(row, 2, other)) << other;
+  for (const double other : {0.0, 1.9, 4.0}) EXPECT_FALSE(isShifted(row, 2, other)) << other;
+  for (const double other : {-2.0, 0.0, 6.0}) EXPECT_FALSE(isShifted(kStreet, 2, other)) << other;
+}
+
 }  // namespace polemcl::test_scan_registration

@@ -13,6 +13,7 @@ constexpr int s_leastPairs = 3;           // fewer determine no motion that can 
 constexpr double s_farthest = 10;         // m, of a motion from the true one
 constexpr double s_clearly = 1.5;         // times the score; three pairs often fit by chance
 constexpr std::size_t s_every = 4;        // scans
+constexpr std::size_t s_beside = 3;       // scans: farthest that confirm a step, on each side
 constexpr double s_poseSigma = 0.02;      // m, as [map] pose_sigma_m
 constexpr double s_headingSigma = 0.002;  // rad, as [map] heading_sigma_deg
 constexpr double s_beyondChance = 16.27;  // 99.9 % of chi-squared with 3 degrees of freedom
@@ -52,17 +53,28 @@ struct Stretch {
   ScanRegistration poles;
 };
 
-/// Whether the stretches that begin a scan earlier, and that end a scan later, have the same step.
+/// Whether stretches that begin earlier, or end later, have the same step. On each side the first
+/// one decides of which the poles tell as much. One side must have it, none may be without.
 bool isConfirmed(const std::vector<SessionScan>& scans, std::size_t first, const Stretch& found) {
-  const auto same = [&](std::size_t before, std::size_t after) {
-    const Stretch other(scans[before], scans[after]);
-    const Pose2D step = found.step(), off = relative(step, other.step());
+  const Pose2D step = found.step();
+  const auto isSame = [&](const Stretch& other) {
+    const Pose2D off = relative(step, other.step());
     return other.isStep() &&
            std::hypot(off.x, off.y) < s_sameStep + s_sameShare * std::hypot(step.x, step.y);
   };
   const std::size_t last = first + s_every;
-  return (first == 0 || same(first - 1, last)) &&
-         (last + 1 == scans.size() || same(first, last + 1));
+  std::vector<Stretch> neighbours;
+  const auto addIfTold = [&](std::size_t before, std::size_t after) {
+    const Stretch other(scans[before], scans[after]);
+    if (other.poles.pairs <= s_leastPairs) return false;
+    neighbours.push_back(other);
+    return true;
+  };
+  for (std::size_t k = 1; k <= std::min(s_beside, first); ++k)
+    if (addIfTold(first - k, last)) break;
+  for (std::size_t k = 1; k <= s_beside && last + k < scans.size(); ++k)
+    if (addIfTold(first, last + k)) break;
+  return !neighbours.empty() && std::all_of(neighbours.begin(), neighbours.end(), isSame);
 }
 
 }  // namespace
@@ -75,7 +87,8 @@ ScanRegistration motionOfPoles(const std::vector<PoleDetection>& before,
   if (2 * static_cast<std::size_t>(near.pairs) >= std::min(before.size(), after.size()))
     return near;
   const ScanRegistration far = searchMotion(before, after, truth, options);
-  return far.pairs > s_leastPairs && far.score > s_clearly * near.score ? far : near;
+  const bool isBetter = far.pairs > s_leastPairs && far.score > s_clearly * near.score;
+  return isBetter && !isShiftedRow(before, after, far, truth) ? far : near;
 }
 
 bool contradictsClearly(const ScanRegistration& poles, const Pose2D& truth) {

@@ -12,7 +12,8 @@
 namespace polemcl {
 
 /// \brief The motion between two scans as their poles have it, near the true one or, where that
-/// fits few poles, farther off. Fewer than 3 pairs: the poles do not tell.
+/// fits few poles, farther off: but not where an even row of poles fits both. Fewer than 3 pairs:
+/// the poles do not tell.
 ScanRegistration motionOfPoles(const std::vector<PoleDetection>& before,
                                const std::vector<PoleDetection>& after, const Pose2D& truth);
 
@@ -46,7 +47,8 @@ class MotionCheck {
 bool contradictsClearly(const ScanRegistration& poles, const Pose2D& truth);
 
 /// \brief Each fourth scan with the fourth after it. Where these contradict clearly, the scans
-/// beside them must tell the same, else it was a wrong pairing of poles.
+/// beside them must tell the same, else it was a wrong pairing of poles. Those with fewer than four
+/// pairs tell nothing.
 MotionCheck checkMotion(const std::vector<SessionScan>& scans);
 
 }  // namespace polemcl

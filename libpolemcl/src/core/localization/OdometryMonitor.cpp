@@ -21,10 +21,6 @@ constexpr int kSurePairs = 5;  // pairs that decide at once; fewer need two scan
 constexpr double kMinShare =
     0.4;                         // least share of the poles of the scan with fewer that are paired
 constexpr double kMargin = 1.5;  // least lead of the poles' motion over the odometry's, in pairs
-constexpr double kNear = 0.4;    // of alike poles, m
-/// Least share of the pairs of a motion: poles that fit themselves after the difference to the
-/// odometry. Then both motions fit, and the poles do not contradict.
-constexpr double kAlike = 0.5;
 constexpr double kStandingShare =
     0.75;  // least share of the poles that stand, where the vehicle does
 constexpr double kLeastChance = 1e-3;   // that none of the poles is seen again; less contradicts
@@ -82,29 +78,6 @@ Eigen::Matrix3d doubt(const Pose2D& from, const Pose2D& to, double share) {
 /// How far `value` lies outside the tolerance around 0.
 double outside(double value, double tolerance) {
   return value > tolerance ? value - tolerance : value < -tolerance ? value + tolerance : 0;
-}
-
-/// Number of poles that come to lie near others by this motion, whatever their covariances.
-int countNear(const std::vector<PoleDetection>& before, const std::vector<PoleDetection>& after,
-              const Pose2D& motion) {
-  RegistrationOptions near;
-  near.sigma = near.reach = kNear;
-  return judgeMotion(before, after, motion, near).pairs;
-}
-
-/// Number of poles of two scans that lie where others would after this motion: in even rows.
-/// \param found The motion from the first scan to the second.
-int countAlike(const std::vector<PoleDetection>& before, const std::vector<PoleDetection>& after,
-               const Pose2D& found, const Pose2D& motion) {
-  if (std::hypot(motion.x, motion.y) < 2 * kNear) return 0;  // each would find itself
-  std::vector<PoleDetection> all = before;
-  for (PoleDetection pole : after) {
-    const Pose2D place = compose(found, {pole.x, pole.y, 0});
-    pole.x = place.x;
-    pole.y = place.y;
-    all.push_back(pole);
-  }
-  return countNear(all, all, motion);
 }
 
 /// Distance of another motion from what the odometry allows, in standard deviations.
@@ -259,10 +232,7 @@ OdometryMonitor::Finding OdometryMonitor::compare(const Reference& reference, co
 bool OdometryMonitor::isDistinct(const Reference& reference, const Reference& now,
                                  const ScanRegistration& found,
                                  const ScanRegistration& stated) const {
-  // From where the odometry says the vehicle is to where the poles do, in the frame before.
-  const Pose2D off = compose(found.motion, relative(stated.motion, Pose2D()));
-  if (countAlike(reference.poles, now.poles, found.motion, off) >= kAlike * found.pairs)
-    return false;
+  if (isShiftedRow(reference.poles, now.poles, found, stated.motion)) return false;
   const double seconds = now.time - reference.time;
   const Pose2D before = scaled(m_speedSeen, seconds);
   const double change = std::hypot(found.motion.x - before.x, found.motion.y - before.y);

@@ -12,6 +12,8 @@
 namespace polemcl {
 namespace {
 
+constexpr double s_near = 0.4;           // of alike poles, m
+constexpr double s_alike = 0.5;          // least share of pairs that a shifted row finds again
 constexpr int s_rounds = 5;              // of pairing and Gauss-Newton
 constexpr std::size_t s_mostPoles = 24;  // of each scan that a search takes, bounds its time
 
@@ -117,6 +119,28 @@ ScanRegistration judgeMotion(const std::vector<PoleDetection>& before,
   judge(pairUp(before, moveAll(after, motion, options.sigma), options.gate, options.reach),
         options.gate, result);
   return result;
+}
+
+int countNear(const std::vector<PoleDetection>& before, const std::vector<PoleDetection>& after,
+              const Pose2D& motion) {
+  RegistrationOptions near;
+  near.sigma = near.reach = s_near;
+  return judgeMotion(before, after, motion, near).pairs;
+}
+
+bool isShiftedRow(const std::vector<PoleDetection>& before, const std::vector<PoleDetection>& after,
+                  const ScanRegistration& found, const Pose2D& other) {
+  // From where the other motion ends to where this one does, in the frame before.
+  const Pose2D shift = compose(found.motion, relative(other, Pose2D()));
+  if (std::hypot(shift.x, shift.y) < 2 * s_near) return false;  // each pole would find itself
+  std::vector<PoleDetection> all = before;
+  for (PoleDetection pole : after) {
+    const Pose2D place = compose(found.motion, {pole.x, pole.y, 0});
+    pole.x = place.x;
+    pole.y = place.y;
+    all.push_back(pole);
+  }
+  return countNear(all, all, shift) >= s_alike * found.pairs;
 }
 
 ScanRegistration refineMotion(const std::vector<PoleDetection>& before,

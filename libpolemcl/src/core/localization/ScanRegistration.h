@@ -38,6 +38,17 @@ POLEMCL_EXPORT ScanRegistration judgeMotion(const std::vector<PoleDetection>& be
                                             const Pose2D& motion,
                                             const RegistrationOptions& options);
 
+/// \brief Number of poles that come to lie near others by this motion, within 0.4 m, whatever their
+/// covariances.
+int countNear(const std::vector<PoleDetection>& before, const std::vector<PoleDetection>& after,
+              const Pose2D& motion);
+
+/// \brief Whether a motion may be another one that a row of alike poles has shifted: as many as
+/// half of its pairs find poles of the two scans again at the distance between the two motions.
+/// Then both fit, and the poles do not tell which is right.
+bool isShiftedRow(const std::vector<PoleDetection>& before, const std::vector<PoleDetection>& after,
+                  const ScanRegistration& found, const Pose2D& other);
+
 /// \brief Least squares over the pairs near a first guess (Gauss-Newton, paired again each time,
 /// the reach narrowing from `reach` to the gate), weighted by the covariances.
 POLEMCL_EXPORT ScanRegistration refineMotion(const std::vector<PoleDetection>& before,
