@@ -6,6 +6,7 @@
 #include "core/localization/OdometryMonitor.h"
 #include "support/PoleCity.h"
 #include "support/Poles.h"
+#include "support/StraightDrive.h"
 
 namespace polemcl::test_odometry_monitor {
 
@@ -92,26 +93,13 @@ MonitoredMotion afterTwoScans(const std::vector<Eigen::Vector2d>& places, const 
 const std::vector<Eigen::Vector2d> kAllRound = {{12, 6}, {15, -7},  {-9, 8},
                                                 {22, 5}, {-13, -6}, {2, -9}};
 
-/// A straight drive at 10 Hz, 300 scans, `step` metres a scan, past poles that are seen half of the
-/// time within 30 m, with others that stay at the places `alongside` beside it from scan 21 on. The
-/// odometry errs by 1 %. \return How many scans replaced it.
-std::size_t replacedOnAStraightDrive(const std::vector<Eigen::Vector2d>& places, double step,
-                                     const std::vector<Eigen::Vector2d>& alongside,
-                                     std::uint64_t seed) {
-  sim::Random random(seed);
+/// How many scans replaced the odometry.
+std::size_t countReplaced(const std::vector<PoleScan>& scans) {
   OdometryMonitor check;
   std::size_t replaced = 0;
-  for (int i = 0; i < 300; ++i) {
-    std::vector<PoleDetection> poles;
-    const auto see = [&](const Eigen::Vector2d& place, double chance) {
-      if (place.norm() < 30 && random.uniform() < chance)
-        poles.push_back(tests::detectionAt(place.x() + 0.03 * random.normal(),
-                                           place.y() + 0.03 * random.normal(), 2e-3));
-    };
-    for (const Eigen::Vector2d& place : places) see(place - Eigen::Vector2d(i * step, 0), 0.5);
-    for (const Eigen::Vector2d& place : alongside) see(place, i > 20 ? 0.9 : 0);
-    const Pose2D motion{1.01 * step, 0, 0};
-    replaced += check.add(0.1 * i, motion, CheckedDrive::covarianceOf(motion), poles).replaced;
+  for (const PoleScan& scan : scans) {
+    const auto motion = scan.motion.value_or(PoseWithCovariance());
+    replaced += check.add(scan.time, motion.mean, motion.covariance, scan.poles_robot).replaced;
   }
   return replaced;
 }
@@ -136,20 +124,15 @@ TEST(OdometryMonitor, LeavesAHealthyOdometryAlone) {
 
 TEST(OdometryMonitor, EvenRowsOfPolesDoNotSpeakAgainstTheOdometry) {
   for (const double distance : {2.0, 4.0, 5.0})
-    for (const std::uint64_t seed : {1, 2, 3}) {
-      std::vector<Eigen::Vector2d> row;
-      for (double x = -40; x < 700; x += distance) row.emplace_back(x, -6);
-      for (double x = -40; x < 700; x += 37) row.emplace_back(x + 3 * std::sin(x), 8);
-      EXPECT_EQ(replacedOnAStraightDrive(row, 2, {}, seed), 0u) << distance << ' ' << seed;
-    }
+    for (const std::uint64_t seed : {1, 2, 3})
+      EXPECT_EQ(countReplaced(tests::straightDrive(tests::evenRow(distance), 2, {}, seed)), 0u)
+          << distance << ' ' << seed;
 }
 
 TEST(OdometryMonitor, PolesThatMoveAlongWithTheVehicleDoNotStopIt) {
-  std::vector<Eigen::Vector2d> street;
-  for (double x = -40; x < 400; x += 9) street.emplace_back(x + 4 * std::sin(x), x > 100 ? 7 : -8);
-  const std::vector<Eigen::Vector2d> lorry{{6, -3}, {7.5, -2.6}, {9, -3}, {10.5, -2.6}, {12, -3}};
   for (const std::uint64_t seed : {1, 2, 3})
-    EXPECT_EQ(replacedOnAStraightDrive(street, 1, lorry, seed), 0u) << seed;
+    EXPECT_EQ(countReplaced(tests::straightDrive(tests::streetPoles(), 1, tests::kLorry, seed)), 0u)
+        << seed;
 }
 
 TEST(OdometryMonitor, AStuckOdometryIsReplacedAtOnceAndBelievedAgain) {

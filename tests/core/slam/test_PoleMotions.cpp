@@ -6,6 +6,7 @@
 #include "core/slam/PoleMotions.h"
 #include "support/PoleCity.h"
 #include "support/Refusal.h"
+#include "support/StraightDrive.h"
 
 namespace polemcl::test_pole_motions {
 namespace {
@@ -168,6 +169,18 @@ TEST_F(PoleMotionsTest, APoorOdometryStays) {
   for (std::size_t i = 29; i < 51; ++i)
     scans[i].poles_robot.resize(std::min<std::size_t>(3, scans[i].poles_robot.size()));
   expectKept();
+}
+
+/// Posts at an even distance fit a shifted motion, those on a lorry a vehicle that stands.
+TEST(PoleMotions, MisleadingPolesSayNothing) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    auto lorry = tests::straightDrive(tests::streetPoles(), 1, tests::kLorry, seed);
+    EXPECT_EQ(fillMotions(lorry).contradicted, 0u) << seed;
+    for (const double distance : {2.0, 4.0, 5.0}) {
+      auto row = tests::straightDrive(tests::evenRow(distance), 2, {}, seed);
+      EXPECT_EQ(fillMotions(row).contradicted, 0u) << distance << ' ' << seed;
+    }
+  }
 }
 
 TEST_F(PoleMotionsTest, RefusesWhereNothingTellsTheWay) {

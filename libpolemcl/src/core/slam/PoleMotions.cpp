@@ -20,11 +20,17 @@ constexpr double kMinShare = 0.4;                // of the poles of the scan wit
 constexpr double kSigma = 0.05, kShare = 0.05, kTurnSigma = 0.01;  // m, of the way, rad
 constexpr double kAcceleration = 3, kTurnAcceleration = 0.5;       // m/s², rad/s², while coasting
 constexpr double kLags[] = {0, 0.3, 1};  // of the window: the scans compared with
-/// A motion of the odometry is wrong if another motion meets three conditions. It has at least this
+/// A motion of the odometry is wrong if another motion meets these conditions. It has at least this
 /// number of pairs:
 constexpr int kPairsAgainst = 4;
 /// Its score is greater by this factor, so that poles seen for the first time do not decide:
 constexpr double kClearly = 1.5;
+/// It is a change of speed that a vehicle makes, or has more pairs:
+constexpr double kMostAcceleration = 6;  // m/s²
+constexpr int kSurePairs = 5;
+/// Poles that stay where they are seen from the vehicle may move along with it. If it stands, at
+/// least this share of the poles do, and it was slow enough to stop:
+constexpr double kStandingShare = 0.75;
 /// It differs by more than the odometry of a healthy vehicle errs: m and rad, and share of both;
 /// and by more than three standard deviations that the odometry states, where these are small:
 constexpr double kSlip = 0.3, kTurnSlip = 0.05, kSlipShare = 0.1;
@@ -112,8 +118,16 @@ class MotionFiller {
     if (!isEnough(found, then, now, kPairsAgainst)) return {};
     if (!isSlip(told, found.motion, m_spent[i] - m_spent[before]))
       return {Verdict::borneOut, found.motion};
-    const bool clear = found.score > kClearly * judgeMotion(then, now, told, {}).score;
-    return {clear ? Verdict::contradicted : Verdict::open, found.motion};
+    const bool isClear = found.score > kClearly * judgeMotion(then, now, told, {}).score;
+    if (!isClear || isShiftedRow(then, now, found, told)) return {};
+    const Pose2D off =
+        relative(isSeen ? motionAfter(velocity, seconds) : found.motion, found.motion);
+    const bool isPossible =
+        std::hypot(off.x, off.y) <= kSlip + kMostAcceleration * seconds * seconds;
+    const bool isStanding = countNear(then, now, Pose2D()) >= found.pairs;
+    const int least = isPossible ? kPairsAgainst : kSurePairs;
+    if (!isEnough(found, then, now, least, isStanding ? kStandingShare : kMinShare)) return {};
+    return {isStanding && !isPossible ? Verdict::open : Verdict::contradicted, found.motion};
   }
 
   bool isSlip(const Pose2D& told, const Pose2D& found, const Eigen::Matrix3d& stated) const {
@@ -219,9 +233,9 @@ class MotionFiller {
   }
 
   static bool isEnough(const ScanRegistration& found, const std::vector<PoleDetection>& before,
-                       const std::vector<PoleDetection>& now, int pairs) {
+                       const std::vector<PoleDetection>& now, int pairs, double share = kMinShare) {
     const auto fewer = static_cast<double>(std::min(before.size(), now.size()));
-    return found.pairs >= pairs && found.score >= kMinShare * fewer;
+    return found.pairs >= pairs && found.score >= share * fewer;
   }
 
   static RegistrationOptions limitsOver(double seconds) {
