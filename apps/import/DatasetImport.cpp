@@ -156,10 +156,9 @@ void checkTimes(const ImportOptions& options, const io::ScanFolder& folder) {
 
 void checkSelection(const ImportOptions& options, const io::ScanFolder& folder) {
   const std::string where = options.input.string() + ": ";
-  if (options.offset >= folder.scans.size())
+  if (const std::size_t last = folder.scans.back().number; options.offset > last)
     throw Error(where + "--offset " + std::to_string(options.offset) +
-                " leaves no scan; there are " + std::to_string(folder.scans.size()) +
-                ", numbered from 0");
+                " leaves no scan; there are " + std::to_string(last + 1) + ", numbered from 0");
   if (options.odometryNoise && !folder.scans.front().T_map_robot)
     throw Error(where +
                 "--odometry-noise needs true poses, and there are none; --poses gives some");
@@ -253,6 +252,7 @@ ImportReport importDataset(const ImportOptions& options,
   Eigen::Isometry3d T_robot_sensor =
       options.T_robot_sensor.value_or(datasetSensorPose(options.dataset));
   auto folder = readDataset(options, T_robot_sensor, progress);
+  for (std::size_t i = 0; i < folder.scans.size(); ++i) folder.scans[i].number = i;
   if (folder.T_robot_sensor) T_robot_sensor = *folder.T_robot_sensor;
   const auto robotIn = [&](bool sensor) {
     return sensor ? T_robot_sensor.inverse() : Eigen::Isometry3d::Identity();
@@ -277,7 +277,7 @@ ImportReport importDataset(const ImportOptions& options,
     const auto& scan = folder.scans[i];
     motions.pass(scan);
     if (progress) progress(i, folder.scans.size());
-    if (!selected(i, options)) {
+    if (!selected(scan.number, options)) {
       ++report.skipped;
       continue;
     }

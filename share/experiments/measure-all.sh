@@ -8,8 +8,7 @@
 #   NAME       experiments, as measured.csv names them; all unless given
 # Copy OUT/reports/ to share/reports/ then. An experiment that fails is told at the end; the others go on.
 # Not among them: unseen-drive.sh, which needs a repository; scan_matching.py and train-classifier.sh, which need
-# programs of others or hours; bench_extraction,
-# bench_step and bench_global (speed.json), which need a quiet machine.
+# programs of others or hours; bench_extraction, bench_step and bench_global (speed.json), which need a quiet machine.
 # Programs: build/bin, or POLEMCL_BIN, of the commit that is checked out. Needs jq, python3-scipy, mrpt-apps; hours.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)

@@ -207,6 +207,24 @@ TEST_F(DatasetImport, OdometryMayErrInAWayThatStays) {
   EXPECT_LT(covariance(pairs[2])(0, 0), 1e-5) << "which the covariance does not know";
 }
 
+/// Even and odd scans stay apart, whichever the odometry covers.
+TEST_F(DatasetImport, ScansAreNumberedBeforeThoseWithoutOdometryAreLeftOut) {
+  writeLine(options.input, 6);
+  std::string rows;
+  for (int i = 1; i < 6; ++i)
+    rows += "100." + std::to_string(i) + ' ' + std::to_string(i) + " 0 0 0 0 0 1\n";
+  writeText(folder / "path.tum", rows);
+  options.odometry = folder / "path.tum";
+  options.every = 2;
+  for (const std::size_t offset : {0, 1}) {
+    options.offset = offset;
+    importDataset(options);
+    const auto truth = io::readTum(folder / "out.tum");
+    ASSERT_EQ(truth.size(), offset == 0 ? 2u : 3u);
+    EXPECT_NEAR(truth[0].time, offset == 0 ? 100.2 : 100.1, 1e-6);
+  }
+}
+
 TEST_F(DatasetImport, NoiseOverridesTheOdometryOfTheFolder) {
   writeLine(options.input, 2);
   writeText(options.input / "odometry.txt", "7 7 1 1 1 1\n");

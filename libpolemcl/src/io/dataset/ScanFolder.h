@@ -27,6 +27,7 @@ struct ScanEntry {
   /// Motion since the previous entry, in the robot frame of that entry. Never set in the first
   /// entry; set in all others or in no entry.
   std::optional<PoseWithCovariance> motion = {};
+  std::size_t number = 0;  ///< set by pole-import: 0-based, before entries are left out
 };
 
 struct ScanFolder {
