@@ -22,13 +22,14 @@ struct MotionEvalOptions : EvalOptions {
 /// scan, m and rad.
 struct Stretch {
   std::size_t scan = 0;  ///< 0-based index of the first scan
-  double time = 0;       ///< of the scan after it, s
   Pose2D truth;
   std::optional<Pose2D> odometry;  ///< none where the rawlog has none
   ScanRegistration poles;  ///< from the true motion on; fewer than 3 pairs: the poles do not tell
 };
 
-std::vector<Stretch> readStretches(const MotionEvalOptions& options) {
+/// \param scans Gets all scans, at their true poses.
+std::vector<Stretch> readStretches(const MotionEvalOptions& options,
+                                   std::vector<SessionScan>& scans) {
   const DriveTruth truth(options.truth, options.poles);
   std::vector<Stretch> stretches;
   std::vector<PoleDetection> before;
@@ -37,13 +38,17 @@ std::vector<Stretch> readStretches(const MotionEvalOptions& options) {
   streamStoredPoles(options.poles, [&](const ReadScan& scan) {
     if (odometry && scan.motion) odometry = compose(*odometry, scan.motion->mean);
     if (!scan.motion) odometry.reset();
-    if (scan.index % options.every != 0) return;
     const Pose2D pose = truth.at(scan.time, scan.index);
     const auto poles = truth.deskewed(scan);
+    scans.emplace_back();
+    scans.back().time = scan.time;
+    scans.back().pose_map_robot = pose;
+    scans.back().poles_robot = poles;
+    if (scan.index % options.every != 0) return;
     if (scan.index > 0) {
       const Pose2D motion = relative(poseBefore, pose);
-      stretches.push_back({scan.index - options.every, scan.time, motion, odometry,
-                           motionOfPoles(before, poles, motion)});
+      stretches.push_back(
+          {scan.index - options.every, motion, odometry, motionOfPoles(before, poles, motion)});
     }
     before = poles;
     poseBefore = pose;
@@ -67,8 +72,8 @@ Figures motionFigures(const MotionEvalOptions& options) {
   Json rows = Json::array();
   std::string text = " scan  truth m     deg  odom. m     deg  poles m     deg  pairs\n";
   double metres = 0, radians = 0, way = 0;
-  MotionCheck check;
-  for (const Stretch& stretch : readStretches(options)) {
+  std::vector<SessionScan> scans;
+  for (const Stretch& stretch : readStretches(options, scans)) {
     const Pose2D &truth = stretch.truth, &poles = stretch.poles.motion;
     const Json row{{"scan", stretch.scan},
                    {"truth", motionJson(truth)},
@@ -79,7 +84,6 @@ Figures motionFigures(const MotionEvalOptions& options) {
     rows.push_back(row);
     text += filled("{scan:5.0}", row) + cells(row["truth"]) + cells(row["odometry"]) +
             cells(tell ? row["poles"] : Json()) + filled("{pairs:7.0}\n", row);
-    check.add(stretch.poles, truth, stretch.time);
     if (!tell) continue;
     way += std::hypot(truth.x, truth.y);
     metres += std::hypot(poles.x, poles.y) - std::hypot(truth.x, truth.y);
@@ -89,13 +93,13 @@ Figures motionFigures(const MotionEvalOptions& options) {
                     filled("the poles say {metres:3} m and {deg:2} deg more than the truth, over "
                            "{way:1} m\n",
                            {{"metres", metres}, {"deg", radians * 180 / M_PI}, {"way", way}}) +
-                    check.verdict() + '\n'};
+                    checkMotion(scans).verdict() + '\n'};
 }
 
 void declareMotion(CLI::App& cli, MotionEvalOptions& options) {
   addFile(cli, "--poles", options.poles, "Rawlog of poles")->required();
   addFile(cli, "--truth", options.truth, "True robot poses, TUM")->required();
-  addNumber(cli, "--every", options.every, "Compare each scan with the N-th after it",
+  addNumber(cli, "--every", options.every, "In the table, compare each scan with the N-th after it",
             CLI::PositiveNumber)
       ->type_name("N");
 }

@@ -177,8 +177,9 @@ void warnOfErrors(const SpreadCheck& check, const std::filesystem::path& truth) 
                                " % of the scans that were ok are more than 0.5 m and 5 times the "
                                "spread of the pose away from " +
                                truth.string() +
-                               ": truth of another drive, of other times or of another datum than "
-                               "the map's, or a sure but wrong pose; pole-eval motion compares it "
+                               ": truth of another drive, of other times or of another frame than "
+                               "the map's (made without --truth it begins at its first scan), or "
+                               "a sure but wrong pose; pole-eval motion compares it "
                                "with the poles")
             << '\n';
 }

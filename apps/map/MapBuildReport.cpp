@@ -110,7 +110,9 @@ void tellDrive(std::ostream& out, const MapBuildSummary& summary, std::size_t i,
   if (const std::size_t missing = filled.byPoles + filled.coasted; missing > 0)
     out << drive << ": no odometry leads to " << missing << " scans; the poles told the way to "
         << filled.byPoles
-        << (filled.coasted > 0 ? ", the others go on as before: look there\n" : "\n");
+        << (filled.coasted > 0 ? ", the others go on as before: look there, the first at " +
+                                     io::fixed(filled.firstCoasted, 3) + " s\n"
+                               : "\n");
   if (filled.all) return;
   const auto& odometry = summary.mapped->odometry[i];
   out << drive << ": its odometry is " << io::fixed(-100 * odometry.x(), 2) << " % long, and turns "
@@ -183,7 +185,8 @@ std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const Map
   for (std::size_t i = 0; i < summary.motions.size(); ++i)
     if (summary.motions[i].contradicts())
       warnings.push_back(job.inputs[i].filename().string() + ": " + summary.motions[i].verdict() +
-                         "; check " + job.poses[i].filename().string());
+                         "; check " + job.poses[i].filename().string() +
+                         ", or build without --truth");
   const std::size_t poles = summary.map.poles.size();
   if (static_cast<double>(summary.twins) > kManyTwins * static_cast<double>(poles))
     warnings.push_back(

@@ -209,7 +209,9 @@ std::string SensorConfigCheck::inspect(const PointsView& points,
     inspection = identifySensor({points});
   } catch (const Error&) {
     if (agreement.mixedCells < 0.5 && agreement.outOfView < 0.5) return {};
-    return text.str() + "no beams of any sensor are found in it" + kWhatToDo;
+    return text.str() +
+           "no beams of any sensor are found in it, as after a correction for a fast motion; with "
+           "check_beams = false, [sensor] is used as it is";
   }
   const double alone = shareAlone(m_model, inspection.beams);
   const PresetFit* other = inspection.preset();

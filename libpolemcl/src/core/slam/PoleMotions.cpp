@@ -55,7 +55,7 @@ class MotionFiller {
       const bool isTold = m_scans[i].motion.has_value();
       m_isTold.push_back(isTold);
       if (i > 0 && isTold) take(i);
-      if (i > 0 && !isTold) ++(fill(i) ? m_filled.byPoles : m_filled.coasted);
+      if (i > 0 && !isTold) fillMissing(i);
       m_poles.push_back(stillPoles(m_scans[i], m_velocity.value_or(Velocity())));
     }
     m_filled.all =
@@ -73,6 +73,14 @@ class MotionFiller {
     m_scans[i].motion = motion;
     m_poses[i] = compose(m_poses[i - 1], motion.mean);
     m_spent[i] = m_spent[i - 1] + motion.covariance;
+  }
+
+  void fillMissing(std::size_t i) {
+    if (fill(i)) {
+      ++m_filled.byPoles;
+    } else if (m_filled.coasted++ == 0) {
+      m_filled.firstCoasted = m_scans[i].time;
+    }
   }
 
   /// The first velocity is that of all motions before, too.

@@ -13,6 +13,7 @@ namespace polemcl {
 struct FilledMotions {
   std::size_t byPoles = 0;       ///< missing motions by the poles
   std::size_t coasted = 0;       ///< missing ones that go on as before, where too few poles told
+  double firstCoasted = 0;       ///< time of the scan that the first of these leads to, s
   std::size_t contradicted = 0;  ///< motions that the poles contradicted, and that they told anew
   double firstContradicted = 0;  ///< time of the scan that the first of these leads to, s
   bool all = false;              ///< no motion is that of an odometry
