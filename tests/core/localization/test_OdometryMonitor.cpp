@@ -303,6 +303,35 @@ TEST(OdometryMonitor, StampsCloseTogetherTellNoSpeed) {
   }
 }
 
+// All scans of a stall are stamped when they come, 1 ms apart.
+TEST(OdometryMonitor, ScansInABurstAfterAStallDoNotReplaceTheOdometry) {
+  for (const double step : {0.3, 1.0, 2.0})
+    for (const int burst : {2, 3, 6, 9}) {
+      SCOPED_TRACE(testing::Message() << step << " m, " << burst << " scans");
+      OdometryMonitor check;
+      for (int i = 0; i < 200; ++i) {
+        const int late = i % 50 >= 20 && i % 50 < 20 + burst ? 20 + burst - 1 - i % 50 : 0;
+        const auto motion = check.add(100 + 0.1 * i + 0.099 * late, {step, 0, 0},
+                                      1e-6 * Eigen::Matrix3d::Identity(), {});
+        EXPECT_FALSE(motion.replaced) << i;
+      }
+    }
+}
+
+TEST(OdometryMonitor, AnOdometryThatStopsDuringAGapIsReplacedAScanLater) {
+  OdometryMonitor check;
+  const auto add = [&](double time, double metres) {
+    return check.add(time, {metres, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity(), {});
+  };
+  for (int i = 0; i < 20; ++i) add(0.1 * i, 1);
+  const MonitoredMotion late = add(2.3, 0);
+  EXPECT_EQ(late.verdict, OdometryVerdict::contradicted);
+  EXPECT_EQ(late.motion.x, 0) << "a burst may follow";
+  const MonitoredMotion next = add(2.4, 0);
+  EXPECT_TRUE(next.replaced);
+  EXPECT_NEAR(next.motion.x, 1, 1e-6);
+}
+
 TEST(OdometryMonitor, APoleThatIsSeenAgainSpeaksForTheOdometry) {
   SparseDrive drive;
   for (int i = 0; i < 40; ++i) drive.drive(3.6);

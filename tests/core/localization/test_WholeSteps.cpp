@@ -65,10 +65,53 @@ TEST(WholeSteps, AfterALongGapTheStepsBeforeAreUsual) {
 TEST(WholeSteps, AJumpTellsNoSpeed) {
   WholeSteps steps;
   steps.add({1, 0, 0}, 0.1);
+  EXPECT_FALSE(steps.isOpen({500, 0, 0}, 0.1));
+  EXPECT_TRUE(steps.isOpen({1, 0, 0}, 0.005)) << "the stamp is wrong, not the motion";
   EXPECT_FALSE(steps.add({500, 0, 0}, 0.1));
   EXPECT_FALSE(steps.add({1, 0, 0}, 0.1));
-  EXPECT_FALSE(steps.add({1, 0, 0}, 0.1));
   EXPECT_NEAR(speedOf(steps.add({1, 0, 0}, 0.1)), 10, 1e-9);
+}
+
+// The scans of a stall come at its end, 1 ms apart. Gaps of right length are no stalls.
+TEST(WholeSteps, ABurstAfterAStallIsOneStep) {
+  for (const double speed : {0.5, 5.0, 20.0})
+    for (const int burst : {2, 3, 6, 9}) {
+      SCOPED_TRACE(testing::Message() << speed << " m/s, " << burst << " scans");
+      WholeSteps steps;
+      int told = 0;
+      const auto add = [&](double seconds) {
+        const auto step = steps.add({0.1 * speed, 0, 0}, seconds);
+        if (!step) return;
+        ++told;
+        EXPECT_NEAR(speedOf(step), speed, 1e-6);
+      };
+      for (int round = 0; round < 5; ++round) {
+        for (int i = 0; i < 10; ++i) add(0.1);
+        EXPECT_FALSE(steps.isOpen({0.1 * speed, 0, 0}, 0.1));
+        EXPECT_TRUE(steps.isOpen({0.1 * speed, 0, 0}, 0.1 * burst));
+        add(0.1 * burst - 0.001 * (burst - 1));
+        EXPECT_TRUE(steps.isOpen({0.1 * speed, 0, 0}, 0.001));
+        for (int i = 1; i < burst; ++i) add(0.001);
+      }
+      EXPECT_EQ(told, 50) << "one of ten ends the burst before";
+    }
+  WholeSteps steps;
+  for (int i = 0; i < 10; ++i) steps.add({1, 0, 0}, 0.1);
+  EXPECT_NEAR(speedOf(steps.add({4, 0, 0}, 0.4)), 10, 1e-9);
+}
+
+TEST(WholeSteps, ABurstLeavesTheUsualLength) {
+  WholeSteps standing;
+  for (int i = 0; i < 10; ++i) standing.add({}, 0.1);
+  standing.add({}, 0.892);
+  for (int i = 0; i < 8; ++i) EXPECT_TRUE(standing.add({}, 0.001));
+  EXPECT_FALSE(standing.tellsSpeed({{0.001, 0, 0}, 0.01}));
+  EXPECT_TRUE(standing.tellsSpeed({{0.005, 0, 0}, 0.1}));
+  WholeSteps first;  // what was before the burst is forgotten
+  for (int i = 0; i < 19; ++i) EXPECT_FALSE(first.add({1, 0, 0}, 0.001));
+  EXPECT_FALSE(first.add({1, 0, 0}, 0.1)) << "too fast";
+  EXPECT_FALSE(first.tellsSpeed({{0.1, 0, 0}, 0.01}));
+  EXPECT_NEAR(speedOf(first.add({1, 0, 0}, 0.1)), 10, 1e-9);
 }
 
 }  // namespace polemcl::test_whole_steps

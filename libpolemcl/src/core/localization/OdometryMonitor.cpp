@@ -261,10 +261,10 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
   m_state = State::believed;
   countSeenAgain(now, odometry.motion);
   if (result.verdict == OdometryVerdict::unknown) {
-    const bool unseen = m_chance < kLeastChance;
-    if ((unseen && m_hasChanged) || !isPossible(now, odometry.motion))
-      return coasted(now, odometry);
-    if (unseen) {
+    const bool isUnseen = m_chance < kLeastChance, isImpossible = !isPossible(now, odometry.motion);
+    const bool isOpen = m_steps.isOpen(odometry.motion, now.time - m_past.back().time);
+    if ((isUnseen && m_hasChanged) || (isImpossible && !isOpen)) return coasted(now, odometry);
+    if (isUnseen || isImpossible) {
       result.verdict = OdometryVerdict::contradicted;
       return result;
     }
@@ -300,7 +300,10 @@ void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion)
 /// Whether the odometry states another motion than at the speed when a pole was last seen again,
 /// beyond the tolerances.
 bool OdometryMonitor::hasChanged(const Pose2D& motion, double seconds) const {
-  return beyondTolerance(motion, scaled(m_speedSeen, seconds), Eigen::Matrix3d::Identity()) > 0;
+  const TimedMotion step = m_steps.joined(motion, seconds);
+  return !m_steps.isOpen(motion, seconds) &&
+         beyondTolerance(step.motion, scaled(m_speedSeen, step.seconds),
+                         Eigen::Matrix3d::Identity()) > 0;
 }
 
 /// Whether a vehicle can have this speed after the one before. After kHold seconds, any is

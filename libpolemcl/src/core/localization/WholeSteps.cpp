@@ -6,7 +6,13 @@
 namespace polemcl {
 namespace {
 
-constexpr int kMostJoined = 3;  // motions in a step
+constexpr int kMostJoined = 20;     // motions in a step: a stall of a second at 20 Hz
+constexpr double kLongShare = 1.5;  // of the usual length; beyond it, the scan may come late
+constexpr double kSameSpeed = 0.8;  // least share of the speed before that is the same
+
+double speedOf(const TimedMotion& step) {
+  return std::hypot(step.motion.x, step.motion.y) / step.seconds;
+}
 
 }  // namespace
 
@@ -16,23 +22,39 @@ TimedMotion WholeSteps::joined(const Pose2D& motion, double seconds) const {
 }
 
 bool WholeSteps::tellsSpeed(const TimedMotion& step) const {
-  return step.seconds >= leastShare * m_usual &&
-         std::hypot(step.motion.x, step.motion.y) <= fastest * step.seconds;
+  return step.seconds >= leastShare * m_usual && speedOf(step) <= fastest;
+}
+
+/// A motion much shorter than usual ends no step, nor does one that is longer and slower; unless
+/// the speed stays the same.
+bool WholeSteps::ends(const Pose2D& motion, double seconds) const {
+  if (m_restCount + 1 >= kMostJoined) return true;
+  const double speed = speedOf(joined(motion, seconds));
+  if (m_restCount == 0 && speed > fastest) return false;
+  const bool isSlower = m_speed && speed < kSameSpeed * *m_speed;
+  if (seconds >= leastShare * m_usual) return seconds <= kLongShare * m_usual || !isSlower;
+  return m_restCount == 0 && m_speed && !isSlower && kSameSpeed * speed <= *m_speed;
+}
+
+bool WholeSteps::isOpen(const Pose2D& motion, double seconds) const {
+  const bool isTooShort = seconds < leastShare * m_usual;
+  return !ends(motion, seconds) && (isTooShort || speedOf(joined(motion, seconds)) <= fastest);
 }
 
 std::optional<TimedMotion> WholeSteps::add(const Pose2D& motion, double seconds) {
   const TimedMotion step = joined(motion, seconds);
-  if (tellsSpeed(step)) {
-    // One long step is a gap: the next may be as short as those before.
-    m_usual = std::min(step.seconds, 2 * m_usual);
-    beginStep();
-    return step;
+  if (!ends(motion, seconds)) {
+    m_rest = step;
+    ++m_restCount;
+    return std::nullopt;
   }
-  m_rest = step;
-  if (++m_restCount < kMostJoined) return std::nullopt;
-  m_usual = seconds;  // scans come faster now
+  // Short steps one by one leave it: they may be a burst while the vehicle stands.
+  if (m_restCount > 0 || seconds >= leastShare * m_usual)
+    m_usual = std::clamp(step.seconds / (m_restCount + 1), 0.5 * m_usual, 2 * m_usual);
   beginStep();
-  return std::nullopt;
+  if (speedOf(step) > fastest) return std::nullopt;
+  m_speed = speedOf(step);
+  return step;
 }
 
 void WholeSteps::beginStep() {

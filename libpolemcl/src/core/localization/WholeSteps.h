@@ -17,11 +17,12 @@ struct TimedMotion {
 
 /// \brief Joins the motions between scans to steps that tell a speed.
 ///
-/// After a stall of a bus or a network, two scans have nearly the same stamp, and a motion between
-/// them that no vehicle makes in that time. Such a step is joined with the next one, two at most.
+/// After a stall of a bus or a network, scans come in a burst and are stamped when they come. The
+/// first has a motion too short for its time, and the others motions that no vehicle makes in
+/// theirs. Such motions are joined with those after them, until one is as long as usual.
 class POLEMCL_EXPORT WholeSteps {
  public:
-  /// \brief Least length of a step, as a share of the one before.
+  /// \brief Least length of a step, as a share of the usual one.
   static constexpr double leastShare = 0.4;
   /// \brief Greatest speed that is believed, m/s.
   static constexpr double fastest = 70;
@@ -31,15 +32,20 @@ class POLEMCL_EXPORT WholeSteps {
   std::optional<TimedMotion> add(const Pose2D& motion, double seconds);
   /// \brief The step that a motion would end. Changes nothing.
   TimedMotion joined(const Pose2D& motion, double seconds) const;
+  /// \brief Whether a motion tells no speed yet: its stamp may be wrong. Changes nothing.
+  bool isOpen(const Pose2D& motion, double seconds) const;
   /// \brief Whether a step is long enough, and not too fast.
   bool tellsSpeed(const TimedMotion& step) const;
   /// \brief The next motion begins a step.
   void beginStep();
 
  private:
-  TimedMotion m_rest;    ///< motions that tell no speed yet
-  int m_restCount = 0;   ///< of these motions
-  double m_usual = 0.1;  ///< length of a step, s; at first that of most LiDARs
+  bool ends(const Pose2D& motion, double seconds) const;
+
+  TimedMotion m_rest;             ///< motions that tell no speed yet
+  int m_restCount = 0;            ///< of these motions
+  double m_usual = 0.1;           ///< length of a motion, s; at first that of most LiDARs
+  std::optional<double> m_speed;  ///< of the last step, m/s
 };
 
 }  // namespace polemcl
