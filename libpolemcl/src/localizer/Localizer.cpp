@@ -50,8 +50,8 @@ struct Localizer::Impl {
   }
   LocalizationUpdate step(const PoleScan& frame);
   LocalizationUpdate step(PoleScan frame, const Pose2D& atScan);
-  /// \brief With the motion that the odometry tells; arguments of ScanOdometry::motionTo().
-  LocalizationUpdate follow(PoleScan frame, double time, const Pose2D& pose);
+  /// \brief After a scan; arguments of ScanOdometry::pass().
+  LocalizationUpdate passed(const LocalizationUpdate& update, double time, const Pose2D& pose);
   LocalizationUpdate stepByOdometry(PoleScan frame, double time);
   PoleScan frameOfScan(const mrpt::obs::CObservation& scan);
 
@@ -78,18 +78,15 @@ LocalizationUpdate Localizer::Impl::step(const PoleScan& frame) {
 /// A scan that is refused leaves no reading of the odometry behind.
 LocalizationUpdate Localizer::Impl::step(PoleScan frame, const Pose2D& atScan) {
   const double time = frame.time;
-  ScanOdometry before = odometry;
-  try {
-    return follow(std::move(frame), time, odometry.addAtScan(time, atScan));
-  } catch (...) {
-    odometry = std::move(before);
-    throw;
-  }
+  const Pose2D pose = odometry.atScan(time, atScan);
+  frame.motion = odometry.motionTo(time, pose);
+  const LocalizationUpdate update = step(frame);
+  odometry.addAtScan(time, atScan);
+  return passed(update, time, pose);
 }
 
-LocalizationUpdate Localizer::Impl::follow(PoleScan frame, double time, const Pose2D& pose) {
-  frame.motion = odometry.motionTo(time, pose);
-  LocalizationUpdate update = step(frame);
+LocalizationUpdate Localizer::Impl::passed(const LocalizationUpdate& update, double time,
+                                           const Pose2D& pose) {
   odometry.pass(time, pose);
   if (update.estimate)
     pose_map_odometry = compose(update.estimate->mean, relative(odometry.track().asRead(pose), {}));
@@ -101,8 +98,9 @@ LocalizationUpdate Localizer::Impl::stepByOdometry(PoleScan frame, double time) 
   if (!pose || !odometry.track().isNear(time))
     throw Error("no odometry within 0.5 s of the scan at " + io::fixed(time, 3) +
                 " s, or readings more than 2 s apart round it");
-  if (!odometry.motionTo(time, *pose)) frame.velocity = odometry.velocity();
-  return follow(std::move(frame), time, *pose);
+  frame.motion = odometry.motionTo(time, *pose);
+  if (!frame.motion) frame.velocity = odometry.velocity();
+  return passed(step(frame), time, *pose);
 }
 
 /// The poles of a scan, as found in it or as stored.

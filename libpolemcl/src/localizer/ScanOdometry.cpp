@@ -69,11 +69,14 @@ void ScanOdometry::restart() {
   m_timeBefore = -INFINITY;
 }
 
-Pose2D ScanOdometry::addAtScan(double time, const Pose2D& pose) {
+Pose2D ScanOdometry::atScan(double time, const Pose2D& pose) const {
   requireFinite(time, pose);
+  return m_before ? m_track.placed(time, pose) : pose;
+}
+
+void ScanOdometry::addAtScan(double time, const Pose2D& pose) {
   if (!m_before) m_track.clear();
   m_track.add(time, pose);
-  return *m_track.at(time);
 }
 
 std::optional<Velocity> ScanOdometry::velocity() const {

@@ -23,8 +23,11 @@ class ScanOdometry {
   void add(const OdometryReading& reading);
   /// \brief A drive begins: no motion leads to its first scan, and its times may begin anew.
   void restart();
-  /// \brief The odometry at a scan. \throws Error unless finite.
-  Pose2D addAtScan(double time, const Pose2D& pose);
+  /// \brief The odometry at a scan, which is not kept: the scan may be refused. \throws Error
+  /// unless finite.
+  Pose2D atScan(double time, const Pose2D& pose) const;
+  /// \brief Keeps it.
+  void addAtScan(double time, const Pose2D& pose);
   const OdometryTrack& track() const { return m_track; }
   /// \brief As the last reading of add() stated it.
   std::optional<Velocity> velocity() const;

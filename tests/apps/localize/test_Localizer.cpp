@@ -415,6 +415,22 @@ TEST(ScanOdometry, AJumpAfterAReadingThatComesLateIsAJump) {
   EXPECT_EQ(odometry.track().jumps(), 1u);
 }
 
+/// The scan may still be refused.
+TEST(ScanOdometry, TheOdometryAtAScanIsKeptOnlyWhenItIsAdded) {
+  ScanOdometry odometry{MotionOptions()};
+  for (const double time : {50.0, 51.0}) {
+    odometry.addAtScan(time, {time, 0, 0});
+    odometry.pass(time, odometry.atScan(time, {time, 0, 0}));
+  }
+  const Pose2D jump{1000, 0, 0}, pose = odometry.atScan(52, jump);
+  EXPECT_NEAR(pose.x, 52, 1e-9);
+  EXPECT_EQ(odometry.track().jumps(), 0u);
+  EXPECT_FALSE(odometry.track().reaches(52));
+  odometry.addAtScan(52, jump);
+  EXPECT_EQ(odometry.track().jumps(), 1u);
+  EXPECT_EQ(odometry.track().at(52)->x, pose.x);
+}
+
 /// Hours without a scan must not fill the memory.
 TEST_F(OdometryTest, IsKeptForAMinute) {
   Localizer own = started();

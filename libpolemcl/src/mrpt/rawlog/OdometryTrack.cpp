@@ -18,13 +18,21 @@ Pose2D goneOn(const Reading& from, const Reading& to, double time) {
 }  // namespace
 
 void OdometryTrack::add(double time, const Pose2D& pose) {
-  Pose2D joined = compose(m_origin, pose);
-  if (isJump(time, joined) || isRestart(time, pose)) {
+  const Pose2D joined = placed(time, pose);
+  if (isBreak(time, pose)) {
     ++m_jumps;
-    joined = afterLast(time);
     m_origin = compose(joined, relative(pose, {}));
   }
   m_readings[time] = joined;
+}
+
+Pose2D OdometryTrack::placed(double time, const Pose2D& pose) const {
+  return isBreak(time, pose) ? afterLast(time) : compose(m_origin, pose);
+}
+
+/// Whether a reading does not go on from those before.
+bool OdometryTrack::isBreak(double time, const Pose2D& pose) const {
+  return jumpsTo(time, pose) || isRestart(time, pose);
 }
 
 /// Only of a reading later than all others: one that comes late has its neighbours already.

@@ -37,6 +37,8 @@ class OdometryTrack {
   static constexpr double kLongestGap = 2;
 
   void add(double time, const Pose2D& pose);
+  /// \brief The pose that such a reading would get. Changes nothing.
+  Pose2D placed(double time, const Pose2D& pose) const;
   /// \brief Whether such a reading would be a jump.
   bool jumpsTo(double time, const Pose2D& pose) const {
     return isJump(time, compose(m_origin, pose));
@@ -72,6 +74,7 @@ class OdometryTrack {
 
  private:
   bool isJump(double time, const Pose2D& pose) const;
+  bool isBreak(double time, const Pose2D& pose) const;
   bool isRestart(double time, const Pose2D& pose) const;
   /// \brief Where the motion before the last reading leads, as kReach and kBaseline say.
   Pose2D afterLast(double time) const;
