@@ -3,13 +3,6 @@
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
-namespace {
-
-/// Share of positions that may not fit. In streets between high houses some always do not.
-constexpr double kManyWrong = 0.3;
-
-}  // namespace
-
 std::string odometryDoubt(const FilledMotions& filled) {
   if (filled.contradicted == 0) return {};
   return "the poles contradict " + std::to_string(filled.contradicted) +
@@ -19,12 +12,13 @@ std::string odometryDoubt(const FilledMotions& filled) {
 }
 
 std::string fixesDoubt(const FixFit& fit) {
-  const std::size_t wrong = fit.given - fit.fitting;
-  if (!(static_cast<double>(wrong) > kManyWrong * static_cast<double>(fit.given))) return {};
-  return std::to_string(wrong) + " of " + std::to_string(fit.given) +
+  if (!fit.isDoubtful()) return {};
+  return std::to_string(fit.given - fit.fitting) + " of " + std::to_string(fit.given) +
          " positions from satellites do not fit its path, they lie " + io::fixed(fit.distance, 2) +
-         " m from it (median); the map may lie wrong by as much: check their clock (GPS time is 18 "
-         "s ahead of UTC), the place of the antenna and sigma";
+         " m from it (median); the map may lie wrong on Earth by far more: a wrong clock shifts it "
+         "by "
+         "speed times time; check their clock (GPS time is 18 s ahead of UTC), the place of the "
+         "antenna and sigma";
 }
 
 }  // namespace polemcl::apps

@@ -85,6 +85,12 @@ class DriveDoubts : public StreetTest {
   }
 };
 
+/// The standard deviation of the first pose that a report tells, m.
+double certainTo(const std::string& report) {
+  const std::string before = "the first pose is certain to ";
+  return std::stod(report.substr(report.find(before) + before.size()));
+}
+
 }  // namespace
 
 TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
@@ -123,6 +129,8 @@ TEST_F(DriveDoubts, PositionsOfAnotherClockAreTold) {
   const auto late = build({"--gnss", at("fixes.csv")});
   ASSERT_EQ(late.code, 0) << late.err;
   EXPECT_HAS(late.err, "of 59 positions from satellites do not fit its path, they lie ");
+  EXPECT_HAS(late.err, "may lie wrong on Earth by far more");
+  EXPECT_GT(certainTo(late.out), 5 * certainTo(right.out));
   EXPECT_HAS(late.err, "clock (GPS time is 18 s ahead of UTC)");
   EXPECT_HAS(info().at("warnings"), "do not fit its path");
   EXPECT_LT(std::stoi(info().at("fixes")), 45);

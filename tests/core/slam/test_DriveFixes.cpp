@@ -57,4 +57,25 @@ TEST(DriveFixes, HowTheyFitIsMeasuredDriveByDrive) {
   EXPECT_EQ(fixFits({}, state, drives)[0].given, 0u);
 }
 
+TEST(DriveFixes, WhereManyDoNotFitTheirSigmasGrowToTheirDistance) {
+  FixFactors gnss;
+  for (std::size_t scan = 0; scan < 3; ++scan) {
+    gnss.fixes.push_back({scan, 0.5, {0, 0}, 0.02, scan});
+    gnss.errors.push_back({0.04, 0});
+  }
+  gnss.fixes.push_back({1, 0.5, {0, 0}, 5, 1});
+  const FixFit fitting{10, 7, 1}, doubtful{10, 6, 1};
+  EXPECT_FALSE(FixFit().isDoubtful());
+  EXPECT_FALSE(fitting.isDoubtful());
+  EXPECT_TRUE(doubtful.isDoubtful());
+  const FixFactors wide = widened(gnss, {fitting, doubtful, fitting}, {0, 1, 2});
+  for (const std::size_t i : {0, 2}) {
+    EXPECT_EQ(wide.fixes[i].sigma, 0.02);
+    EXPECT_EQ(wide.errors[i].sigma, 0.04);
+  }
+  EXPECT_EQ(wide.fixes[1].sigma, 1);
+  EXPECT_EQ(wide.errors[1].sigma, 2) << "twice, as usual";
+  EXPECT_EQ(wide.fixes[3].sigma, 5) << "the receiver said so";
+}
+
 }  // namespace polemcl::test_drive_fixes

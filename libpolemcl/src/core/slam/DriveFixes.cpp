@@ -17,6 +17,7 @@ constexpr std::size_t kFewest = 5;     ///< fixes that lay a drive on the plane
 constexpr double kSpread = 10;         ///< m: least rms distance of these from their mean
 constexpr double kFarOff = 2.5;        ///< distances from the motion, in median ones
 constexpr int kFits = 10;
+constexpr double kManyWrong = 0.3;  ///< share of fixes
 
 Eigen::Matrix2Xd columns(const std::vector<Eigen::Vector2d>& points) {
   Eigen::Matrix2Xd matrix(2, static_cast<Eigen::Index>(points.size()));
@@ -97,6 +98,23 @@ std::vector<FixFit> fixFits(const FixFactors& gnss, const AdjustedState& state,
     if (fits[i].given > 0) fits[i].distance = elementOfRank(distances[i], fits[i].given / 2);
   }
   return fits;
+}
+
+bool FixFit::isDoubtful() const {
+  return static_cast<double>(given - fitting) > kManyWrong * static_cast<double>(given);
+}
+
+FixFactors widened(const FixFactors& gnss, const std::vector<FixFit>& fits,
+                   const std::vector<std::size_t>& drives) {
+  FixFactors wide = gnss;
+  for (PositionFix& fix : wide.fixes) {
+    const FixFit& fit = fits[drives[fix.scan]];
+    if (!fit.isDoubtful() || fit.distance <= fix.sigma) continue;
+    LastingError& lasting = wide.errors[fix.error];
+    lasting.sigma = std::max(lasting.sigma, kLasting * fit.distance);
+    fix.sigma = fit.distance;
+  }
+  return wide;
 }
 
 std::optional<Pose2D> motionOntoFixes(const std::vector<DriveFix>& fixes,

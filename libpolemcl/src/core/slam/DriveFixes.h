@@ -31,12 +31,19 @@ struct FixFit {
   std::size_t given = 0;    ///< fixes
   std::size_t fitting = 0;  ///< within three sigmas; the others have lost most of their weight
   double distance = 0;      ///< of the fixes from the antenna on the path, median, m
+  /// \brief More than 30 % do not fit. Between high houses some always do not.
+  bool isDoubtful() const;
 };
 
 /// \brief How the fixes fit an adjusted state, drive by drive.
 /// \param gnss They were a part of the adjustment. \param drives Of each scan.
 std::vector<FixFit> fixFits(const FixFactors& gnss, const AdjustedState& state,
                             const std::vector<std::size_t>& drives);
+
+/// \brief The fixes with wider sigmas, in drives where they are doubtful: by as much as they lie
+/// farther off than the receiver says. \param fits Of each drive, from fixFits().
+FixFactors widened(const FixFactors& gnss, const std::vector<FixFit>& fits,
+                   const std::vector<std::size_t>& drives);
 
 /// \brief The rigid motion that lays a drive onto its fixes, those left out that are far off; none
 /// if they are too few or too near to each other to tell its heading.

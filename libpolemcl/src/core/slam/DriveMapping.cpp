@@ -50,6 +50,7 @@ class DriveMapping {
   std::vector<KnownPose> known() const;
   void requireConnected() const;
   void merge(double gate, Covariance covariance);
+  void widenWhereFixesAreDoubtful();
   Eigen::Matrix3d covarianceOf(std::size_t scan) const;
   std::vector<PoseWithCovariance> poses() const;
   MappedDrives result() const;
@@ -212,6 +213,17 @@ void DriveMapping::merge(double gate, Covariance covariance) {
     m_state.poles[i] = m_state.poles[sets.root(i)];
 }
 
+/// The poses stay, with the covariance that wider sigmas of the fixes give them.
+void DriveMapping::widenWhereFixesAreDoubtful() {
+  const std::vector<FixFit> fits = fixFits(m_factors.gnss, m_state, m_drives);
+  if (std::none_of(fits.begin(), fits.end(), [](const FixFit& fit) { return fit.isDoubtful(); }))
+    return;
+  AdjustmentFactors wide = m_factors;
+  wide.gnss = widened(m_factors.gnss, fits, m_drives);
+  m_knots.covariance =
+      JointAdjustment(m_scans, m_trust, wide, m_state).poseCovariance(m_knots.scans);
+}
+
 MappedDrives DriveMapping::run() {
   chain();
   track();
@@ -226,6 +238,7 @@ MappedDrives DriveMapping::run() {
   requireConnected();
   for (const double gate : kMergeGates) merge(gate, Covariance::open);
   merge(kLastGate, Covariance::known);
+  widenWhereFixesAreDoubtful();
   return result();
 }
 
