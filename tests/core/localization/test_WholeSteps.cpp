@@ -65,6 +65,8 @@ TEST(WholeSteps, AfterALongGapTheStepsBeforeAreUsual) {
 TEST(WholeSteps, AJumpTellsNoSpeed) {
   WholeSteps steps;
   steps.add({1, 0, 0}, 0.1);
+  EXPECT_FALSE(steps.isOpen({500, 0, 0}, 0.1));
+  EXPECT_TRUE(steps.isOpen({1, 0, 0}, 0.005)) << "the stamp is wrong, not the motion";
   EXPECT_FALSE(steps.add({500, 0, 0}, 0.1));
   EXPECT_FALSE(steps.add({1, 0, 0}, 0.1));
   EXPECT_NEAR(speedOf(steps.add({1, 0, 0}, 0.1)), 10, 1e-9);
@@ -88,6 +90,7 @@ TEST(WholeSteps, ABurstAfterAStallIsOneStep) {
         EXPECT_FALSE(steps.isOpen({0.1 * speed, 0, 0}, 0.1));
         EXPECT_TRUE(steps.isOpen({0.1 * speed, 0, 0}, 0.1 * burst));
         add(0.1 * burst - 0.001 * (burst - 1));
+        EXPECT_TRUE(steps.isOpen({0.1 * speed, 0, 0}, 0.001));
         for (int i = 1; i < burst; ++i) add(0.001);
       }
       EXPECT_EQ(told, 50) << "one of ten ends the burst before";

@@ -37,7 +37,8 @@ bool WholeSteps::ends(const Pose2D& motion, double seconds) const {
 }
 
 bool WholeSteps::isOpen(const Pose2D& motion, double seconds) const {
-  return !ends(motion, seconds) && speedOf(joined(motion, seconds)) <= fastest;
+  const bool isTooShort = seconds < leastShare * m_usual;
+  return !ends(motion, seconds) && (isTooShort || speedOf(joined(motion, seconds)) <= fastest);
 }
 
 std::optional<TimedMotion> WholeSteps::add(const Pose2D& motion, double seconds) {
