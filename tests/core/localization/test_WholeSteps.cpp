@@ -38,6 +38,13 @@ TEST(WholeSteps, AStepTooShortIsJoinedWithTheNext) {
   EXPECT_NEAR(speedOf(steps.add({1, 0, 0}, 0.1)), 10, 1e-9);
 }
 
+/// Key frames: the vehicle slows down before a junction.
+TEST(WholeSteps, AStepOfSecondsTellsThatTheVehicleIsSlower) {
+  WholeSteps steps;
+  for (int i = 0; i < 3; ++i) steps.add({4, 0, 0}, 0.5);
+  EXPECT_NEAR(speedOf(steps.add({3, 0, 0}, 4)), 0.75, 1e-9);
+}
+
 TEST(WholeSteps, TheFirstStepMayBeTooShort) {
   WholeSteps steps;
   EXPECT_FALSE(steps.add({0.1, 0, 0}, 0.005));

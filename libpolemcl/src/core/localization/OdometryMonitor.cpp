@@ -318,16 +318,14 @@ bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) con
                                          kMostAcceleration * seconds * seconds;
 }
 
-/// Keeps the speed before, also for the motions that told no speed yet. The covariance also covers
-/// the motion that the odometry states.
+/// Keeps the speed before. The covariance also covers the motion that the odometry states.
 MonitoredMotion OdometryMonitor::coasted(Reference& now, const MonitoredMotion& odometry) {
   const Reference& last = m_past.back();
   if (m_chance < kLeastChance && m_hasChanged) m_speed = m_speedSeen;
   MonitoredMotion result = odometry;
   result.verdict = OdometryVerdict::contradicted;
   result.replaced = true;
-  const TimedMotion rest = m_steps.joined(Pose2D(), 0);
-  result.motion = relative(rest.motion, coast(rest.seconds + now.time - last.time));
+  result.motion = coast(now.time - last.time);
   now.used = compose(last.used, result.motion);
   result.covariance += doubt(result.motion, odometry.motion, 0.5);
   return result;

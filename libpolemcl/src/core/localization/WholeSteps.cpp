@@ -6,9 +6,10 @@
 namespace polemcl {
 namespace {
 
-constexpr int kMostJoined = 20;     // motions in a step: a stall of a second at 20 Hz
-constexpr double kLongShare = 1.5;  // of the usual length; beyond it, the scan may come late
-constexpr double kSameSpeed = 0.8;  // least share of the speed before that is the same
+constexpr int kMostJoined = 20;      // motions in a step: a stall of a second at 20 Hz
+constexpr double kLongShare = 1.5;   // of the usual length; beyond it, the scan may come late
+constexpr double kLongestStall = 1;  // s; who sends less often has slowed down
+constexpr double kSameSpeed = 0.8;   // least share of the speed before that is the same
 
 double speedOf(const TimedMotion& step) {
   return std::hypot(step.motion.x, step.motion.y) / step.seconds;
@@ -25,14 +26,15 @@ bool WholeSteps::tellsSpeed(const TimedMotion& step) const {
   return step.seconds >= leastShare * m_usual && speedOf(step) <= fastest;
 }
 
-/// A motion much shorter than usual ends no step, nor does one that is longer and slower; unless
-/// the speed stays the same.
+/// A motion much shorter than usual ends no step, nor does one that is longer, up to a second,
+/// and slower; unless the speed stays the same.
 bool WholeSteps::ends(const Pose2D& motion, double seconds) const {
   if (m_restCount + 1 >= kMostJoined) return true;
   const double speed = speedOf(joined(motion, seconds));
   if (m_restCount == 0 && speed > fastest) return false;
   const bool isSlower = m_speed && speed < kSameSpeed * *m_speed;
-  if (seconds >= leastShare * m_usual) return seconds <= kLongShare * m_usual || !isSlower;
+  if (seconds >= leastShare * m_usual)
+    return seconds <= kLongShare * m_usual || seconds > kLongestStall || !isSlower;
   return m_restCount == 0 && m_speed && !isSlower && kSameSpeed * speed <= *m_speed;
 }
 
