@@ -207,9 +207,8 @@ void measureSharpness(const std::vector<BeamPoint>& points, const BlockOrigins& 
       << estimate.beams() << " found, only " << 100 * estimate.sharpness
       << " % of the returns lie near one (" << 100 * kLeastSharpness
       << " % are needed). Merged, voxel-thinned, noisy or levelled clouds have none, nor have "
-         "scans "
-         "that were corrected for a fast motion; give single scans as the sensor measured them, in "
-         "its own axes, or take a configuration of this LiDAR (share/doc/lidars.md)";
+         "those that were corrected for a fast motion; give single scans as the sensor measured "
+         "them, in its own axes, or take a configuration of this LiDAR (share/doc/lidars.md)";
   throw Error(text.str());
 }
 
