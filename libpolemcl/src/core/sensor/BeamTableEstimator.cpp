@@ -201,14 +201,13 @@ void measureSharpness(const std::vector<BeamPoint>& points, const BlockOrigins& 
 
 [[noreturn]] void refuseEstimate(const BeamTableEstimate& estimate) {
   std::ostringstream text;
-  text
-      << std::fixed << std::setprecision(0)
-      << "no beams: the returns do not lie on cones about the z axis of their frame; of the best "
-      << estimate.beams() << " found, only " << 100 * estimate.sharpness
-      << " % of the returns lie near one (" << 100 * kLeastSharpness
-      << " % are needed). Merged, voxel-thinned, noisy or levelled clouds have none, nor have "
-         "those that were corrected for a fast motion; give single scans as the sensor measured "
-         "them, in its own axes, or take a configuration of this LiDAR (share/doc/lidars.md)";
+  text << std::fixed << std::setprecision(0)
+       << "no beams: the returns do not lie on cones about the z axis of their frame; of the best "
+       << estimate.beams() << " found, only " << 100 * estimate.sharpness
+       << " % of the returns lie near one (" << 100 * kLeastSharpness
+       << " % are needed). Merged, voxel-thinned, noisy or levelled clouds have none, nor have "
+          "those that were corrected for a fast motion; give single scans as the sensor measured "
+          "them, in its own axes, or take a configuration of this LiDAR (share/doc/lidars.md)";
   throw Error(text.str());
 }
 
