@@ -22,7 +22,9 @@ constexpr double kHalfSure = 2;             ///< standard errors by which a turn
 
 /// Models with a configuration of their own.
 constexpr std::pair<const char*, const char*> kShipped[] = {
-    {"hdl64e", "kitti.ini"}, {"hdl32e", "hdl32e.ini"}, {"vlp16", "vlp16.ini"}};
+    {"hdl64e", "kitti.ini (ranges: of KITTI's own)"},
+    {"hdl32e", "hdl32e.ini"},
+    {"vlp16", "vlp16.ini"}};
 
 std::string degrees(double radians, int digits = 2) {
   return io::fixed(radians / degree, digits);
@@ -166,6 +168,7 @@ std::string settingsOf(const ScanTiming& timing) {
 
 /// What may be right though the poles do not show it clearly, or were not asked.
 void printDoubt(std::ostream& out, const Inspection& inspection) {
+  if (inspection.sensor.sensor.onItsHead) return;  // seen from there, it turns the other way
   const std::optional<TimingEstimate>& found = inspection.timing;
   std::optional<ScanTiming> likely = turnOfOrder(inspection.sensor);
   if (likely)
@@ -193,9 +196,10 @@ void printTiming(std::ostream& out, const Inspection& inspection) {
                 ? "not looked for in clouds that are upside down\n"
                 : "not looked for: this rawlog has no odometry between all scans; --truth S.tum\n"
                   "                  gives the motion: S.tum beside S.rawlog, where the dataset "
-                  "has "
-                  "poses; or a path of\n                  `pole-map build --trajectory`, which "
-                  "cannot show a timing that it has swallowed\n");
+                  "has poses; or a path of\n"
+                  "                  `pole-map build --trajectory`, which cannot show a timing "
+                  "that "
+                  "it has swallowed\n");
     printDoubt(out, inspection);
     return;
   }

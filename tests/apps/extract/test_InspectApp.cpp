@@ -275,6 +275,9 @@ TEST_F(InspectApp, TheOrderOfThePointsTellsRawScans) {
   Inspection slid = found;
   slid.sensor.sensor.beams.origin.slide = 1;
   EXPECT_FALSE(has(printed(slid), advice)) << "corrected for motion";
+  Inspection onItsHead = found;
+  onItsHead.sensor.sensor.onItsHead = true;
+  EXPECT_FALSE(has(printed(onItsHead), "in the order of measuring"));
   Inspection mixed = found;
   mixed.sensor.orders.back().turn = Turn::counterclockwise;
   EXPECT_FALSE(has(printed(mixed), advice));
