@@ -198,8 +198,7 @@ void printTiming(std::ostream& out, const Inspection& inspection) {
                   "                  gives the motion: S.tum beside S.rawlog, where the dataset "
                   "has poses; or a path of\n"
                   "                  `pole-map build --trajectory`, which cannot show a timing "
-                  "that "
-                  "it has swallowed\n");
+                  "that it has swallowed\n");
     printDoubt(out, inspection);
     return;
   }
