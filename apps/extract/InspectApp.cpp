@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
+#include <utility>
 
 #include "config/Config.h"
 #include "core/common/Angles.h"
@@ -17,6 +18,13 @@ namespace {
 
 constexpr double kMovingArc = 10 * degree;  ///< rad; wider than lasers of one firing differ
 constexpr double kUsualDistance = 0.08;     ///< m; see share/doc/motion.md
+constexpr double kHalfSure = 2;             ///< standard errors by which a turn is worth a try
+
+/// Models with a configuration of their own.
+constexpr std::pair<const char*, const char*> kShipped[] = {
+    {"hdl64e", "kitti.ini (ranges: of KITTI's own)"},
+    {"hdl32e", "hdl32e.ini"},
+    {"vlp16", "vlp16.ini"}};
 
 std::string degrees(double radians, int digits = 2) {
   return io::fixed(radians / degree, digits);
@@ -84,10 +92,13 @@ void printPresets(std::ostream& out, const RawlogInspection& inspection) {
           << " % of the angle between beams";
     out << '\n';
   }
-  if (const PresetFit* fit = sensor.preset())
+  if (const PresetFit* fit = sensor.preset()) {
     out << "fits              model = " << fit->model
         << (fit->upsideDown ? ", upside_down = true" : "") << '\n';
-  else
+    for (const auto& [model, file] : kShipped)
+      if (fit->model == model)
+        out << "                  config/" << file << " has settings chosen for this LiDAR\n";
+  } else
     out << "fits              no preset; model = table with the elevations above\n";
 }
 
@@ -95,6 +106,7 @@ void printPresets(std::ostream& out, const RawlogInspection& inspection) {
 double beginArc(const std::vector<PointOrder>& orders) {
   double least = 0, most = 0;
   for (const PointOrder& order : orders) {
+    if (order.turn != orders.front().turn) return 0;
     const double away = std::remainder(order.begin - orders.front().begin, 2 * M_PI);
     least = std::min(least, away);
     most = std::max(most, away);
@@ -102,9 +114,14 @@ double beginArc(const std::vector<PointOrder>& orders) {
   return most - least;
 }
 
+std::string nameOf(Turn turn) {
+  for (const auto& [each, name] : turnNames())
+    if (each == turn) return name;
+  return {};
+}
+
 void printCut(std::ostream& out, const ScanTiming& timing, double arc) {
-  for (const auto& [turn, name] : turnNames())
-    if (turn == timing.turn) out << name;
+  out << nameOf(timing.turn);
   if (!timing.known()) {
     out << ", as far as the poles show";
     return;
@@ -133,6 +150,44 @@ double clockOffset(const Inspection& inspection) {
   return found.timing.clock - (found.isStated ? inspection.sensor.stated.clock : 0);
 }
 
+/// The turn that the order of the points tells, where scans begin far apart and nothing says that
+/// they are corrected for motion.
+std::optional<ScanTiming> turnOfOrder(const RawlogInspection& scans) {
+  if (beginArc(scans.orders) <= kMovingArc || scans.isTimed || scans.sensor.beams.origin.slide != 0)
+    return std::nullopt;
+  ScanTiming timing;
+  timing.turn = scans.orders.front().turn;
+  timing.movingCut = true;
+  return timing;
+}
+
+std::string settingsOf(const ScanTiming& timing) {
+  return "turn = " + nameOf(timing.turn) + ", " +
+         (timing.movingCut ? "moving_cut = true" : "cut_deg = " + degrees(timing.cut, 0));
+}
+
+/// What may be right though the poles do not show it clearly, or were not asked.
+void printDoubt(std::ostream& out, const Inspection& inspection) {
+  if (inspection.sensor.sensor.onItsHead) return;  // seen from there, it turns the other way
+  const std::optional<TimingEstimate>& found = inspection.timing;
+  std::optional<ScanTiming> likely = turnOfOrder(inspection.sensor);
+  if (likely)
+    out << "                  The points are in the order of measuring, " << nameOf(likely->turn)
+        << ", and begin up to\n                  " << degrees(beginArc(inspection.sensor.orders), 0)
+        << " deg apart, as those of raw scans"
+        << (found ? "; poses found from raw scans hide it.\n" : ".\n");
+  if (found && found->candidate.known()) {
+    out << "                  Not sure: with " << settingsOf(found->candidate)
+        << ", a pole moves by " << io::fixed(found->withCandidate, 4) << " m,\n                  "
+        << io::fixed(found->turnSignificance, 1) << " standard errors better (4 are needed).\n";
+    if (found->turnSignificance >= kHalfSure && found->withCandidate <= kUsualDistance)
+      likely = found->candidate;
+  }
+  if (likely)
+    out << "                  Unless the scans were corrected for motion, set "
+        << settingsOf(*likely) << '\n';
+}
+
 void printTiming(std::ostream& out, const Inspection& inspection) {
   const std::optional<TimingEstimate>& found = inspection.timing;
   out << "scan timing       ";
@@ -140,18 +195,24 @@ void printTiming(std::ostream& out, const Inspection& inspection) {
     out << (inspection.sensor.sensor.onItsHead
                 ? "not looked for in clouds that are upside down\n"
                 : "not looked for: this rawlog has no odometry between all scans; --truth S.tum\n"
-                  "                  gives the motion (pole-import writes S.tum beside "
-                  "S.rawlog)\n");
+                  "                  gives the motion: S.tum beside S.rawlog, where the dataset "
+                  "has poses; or a path of\n"
+                  "                  `pole-map build --trajectory`, which cannot show a timing "
+                  "that it has swallowed\n");
+    printDoubt(out, inspection);
     return;
   }
   if (found->pairs == 0) {
     out << "unknown: no pole was seen from two places\n";
+    printDoubt(out, inspection);
     return;
   }
   const ScanTiming& timing = found->timing;
   if (found->isStated) out << "as the rawlog states it: ";
   printCut(out, timing, found->isStated ? 0 : beginArc(inspection.sensor.orders));
-  out << "\nclock             "
+  out << '\n';
+  if (!timing.known()) printDoubt(out, inspection);
+  out << "clock             "
       << (clockOffset(inspection) != 0 ? "clock_offset_s = " + io::fixed(clockOffset(inspection), 2)
                                        : "no offset seen")
       << "\nsignificance      " << found->pairs << " pairs of sightings, a pole moves by "
@@ -230,24 +291,38 @@ bool searchDrive(const InspectOptions& options, bool movingCut, Inspection& foun
   return true;
 }
 
+/// Takes the first point of each scan as its cut if that is what was found from the azimuths after
+/// it. \return Whether it is.
+bool cutAtFirstPoint(ScanTiming& timing, Turn turn) {
+  constexpr double kNearBegin = M_PI / 6;  // cuts are searched in steps of half of it
+  if (timing.turn != turn || std::abs(std::remainder(timing.cut, 2 * M_PI)) > kNearBegin)
+    return false;
+  timing.cut = ScanTiming().cut;  // not used
+  timing.movingCut = true;
+  return true;
+}
+
 /// The timing, with the first point of each scan as its cut where these lie far apart and the poles
 /// agree; and the ranges.
 void searchDrive(const InspectOptions& options, Inspection& result, const ScanProgress& progress) {
-  constexpr double kNearBegin = M_PI / 6;  // cuts are searched in steps of half of it
   const std::vector<PointOrder>& orders = result.sensor.orders;
-  if (beginArc(orders) > kMovingArc) {
-    Inspection moving{result.sensor, {}, {}};
-    moving.sensor.stated = {};  // it names a single cut
-    if (searchDrive(options, true, moving, progress) &&
-        moving.timing->timing.turn == orders.front().turn &&
-        std::abs(std::remainder(moving.timing->timing.cut, 2 * M_PI)) <= kNearBegin) {
-      moving.timing->timing.cut = ScanTiming().cut;  // not used
-      moving.timing->timing.movingCut = true;
-      result = moving;
-      return;
-    }
+  if (beginArc(orders) <= kMovingArc) {
+    searchDrive(options, false, result, progress);
+    return;
+  }
+  Inspection moving{result.sensor, {}, {}};
+  moving.sensor.stated = {};  // it names a single cut
+  if (!searchDrive(options, true, moving, progress)) return;
+  if (cutAtFirstPoint(moving.timing->timing, orders.front().turn)) {
+    result = moving;
+    return;
   }
   searchDrive(options, false, result, progress);
+  if (result.timing->timing.known()) return;
+  if (cutAtFirstPoint(moving.timing->candidate, orders.front().turn))
+    result.timing = moving.timing;
+  else
+    result.timing->candidate = {};  // a single cut, which does not fit them
 }
 
 /// Only what was looked for: all other keys keep their defaults.

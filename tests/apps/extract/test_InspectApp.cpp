@@ -89,10 +89,30 @@ class InspectApp : public StreetTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
+  /// Raw scans of a street of this length, m, as cutAnew() makes them, without odometry:
+  /// `in.rawlog`, with their motion in `sim.tum`.
+  void importCutAnew(const std::string& length) {
+    const auto simulated = runProgram(
+        simulateMain,
+        {"--quiet", "--config", "vlp16.ini", "--length", length, "--output", at("sim"), "--set",
+         "simulation.motion_distortion=true", "--set", "simulation.spacing_m=0.8", "--set",
+         "simulation.speed_m_s=8", "--set", "sensor.turn=clockwise", "--set",
+         "sensor.range_offset_m=0.1", "--set", "sensor.range_scale=0.995"});
+    ASSERT_EQ(simulated.code, 0) << simulated.err;
+    import("sim", false);  // for its true poses
+    cutAnew(folder.path(), io::readTum(folder / "sim.tum").size());
+    import("in", false);
+  }
 };
 
 bool has(const std::string& text, const std::string& word) {
   return text.find(word) != std::string::npos;
+}
+
+std::string printed(const Inspection& inspection) {
+  std::ostringstream text;
+  printInspection(text, inspection);
+  return text.str();
 }
 
 }  // namespace
@@ -105,7 +125,10 @@ TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
   EXPECT_TRUE(has(outcome.out, "beams             32")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "fits              model = hdl32e")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "tilt")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "config/hdl32e.ini has settings chosen")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "no odometry between all scans; --truth S.tum")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "`pole-map build --trajectory`, which cannot show")) << outcome.out;
+  EXPECT_FALSE(has(outcome.out, "Unless the scans were corrected")) << outcome.out;
   const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.model, "hdl32e");
   EXPECT_NEAR(settings.sensor.height, 1.0, 0.1);
@@ -208,16 +231,7 @@ TEST_F(InspectApp, KnowsTheLidarOfKitti) {
 }
 
 TEST_F(InspectApp, FindsACutThatMovesAndRangesThatAreOff) {
-  const auto simulated =
-      runProgram(simulateMain,
-                 {"--quiet", "--config", "vlp16.ini", "--length", "100", "--output", at("sim"),
-                  "--set", "simulation.motion_distortion=true", "--set", "simulation.spacing_m=0.8",
-                  "--set", "simulation.speed_m_s=8", "--set", "sensor.turn=clockwise", "--set",
-                  "sensor.range_offset_m=0.1", "--set", "sensor.range_scale=0.995"});
-  ASSERT_EQ(simulated.code, 0) << simulated.err;
-  import("sim", false);  // for its true poses
-  cutAnew(folder.path(), io::readTum(folder / "sim.tum").size());
-  import("in", false);
+  importCutAnew("100");
   InspectOptions files;
   files.input = folder / "in.rawlog";
   files.writeConfig = folder / "found.ini";
@@ -240,6 +254,71 @@ TEST_F(InspectApp, FindsACutThatMovesAndRangesThatAreOff) {
   const SensorOptions written = loadSettings((folder / "found.ini").string()).sensor;
   EXPECT_NEAR(written.rangeOffset, found.ranges->offset, 0.0005);
   EXPECT_NEAR(written.rangeScale, found.ranges->scale, 0.00005);
+}
+
+// Also where nobody knows the motion, or where the poses were found from the same scans.
+TEST_F(InspectApp, TheOrderOfThePointsTellsRawScans) {
+  const std::string advice = "set turn = clockwise, moving_cut = true";
+  importCutAnew("40");
+  InspectOptions files;
+  files.input = folder / "in.rawlog";
+  Inspection found = inspect(files);
+  EXPECT_FALSE(found.timing);
+  EXPECT_TRUE(has(printed(found), "in the order of measuring, clockwise")) << printed(found);
+  EXPECT_TRUE(has(printed(found), advice)) << printed(found);
+  found.timing.emplace();
+  EXPECT_TRUE(has(printed(found), advice)) << "no pole was seen twice";
+  found.timing->timing.turn = Turn::compensated;
+  found.timing->pairs = 100;
+  EXPECT_TRUE(has(printed(found), "poses found from raw scans hide it")) << printed(found);
+  EXPECT_TRUE(has(printed(found), advice)) << printed(found);
+  Inspection slid = found;
+  slid.sensor.sensor.beams.origin.slide = 1;
+  EXPECT_FALSE(has(printed(slid), advice)) << "corrected for motion";
+  Inspection onItsHead = found;
+  onItsHead.sensor.sensor.onItsHead = true;
+  EXPECT_FALSE(has(printed(onItsHead), "in the order of measuring"));
+  Inspection mixed = found;
+  mixed.sensor.orders.back().turn = Turn::counterclockwise;
+  EXPECT_FALSE(has(printed(mixed), advice));
+  found.timing->timing.turn = Turn::clockwise;
+  EXPECT_FALSE(has(printed(found), advice)) << "the poles show it";
+
+  ImportOptions options;
+  options.input = folder / "in";
+  options.output = folder / "stated.rawlog";
+  options.timing = ScanTiming{Turn::clockwise, 0.103};
+  options.timing->movingCut = true;
+  importDataset(options);
+  files.input = options.output;
+  EXPECT_FALSE(has(printed(inspect(files)), advice)) << "the rawlog says so itself";
+}
+
+TEST_F(InspectApp, PrintsATurnThatIsNotSure) {
+  writeSimulated(folder / "in", "vlp16", 1.0);
+  import("in");
+  InspectOptions files;
+  files.input = folder / "in.rawlog";
+  Inspection found = inspect(files);
+  found.timing.emplace();
+  found.timing->timing.turn = Turn::compensated;
+  found.timing->pairs = 100;
+  found.timing->turnSignificance = 2.4;
+  EXPECT_FALSE(has(printed(found), "Not sure")) << printed(found);
+  found.timing->candidate = {Turn::clockwise, 0.1, M_PI};
+  found.timing->withCandidate = 0.0533;
+  const std::string advice = "set turn = clockwise, cut_deg = 180\n";
+  EXPECT_TRUE(has(printed(found),
+                  "with turn = clockwise, cut_deg = 180, a pole moves by 0.0533 m,\n"
+                  "                  2.4 standard errors better"))
+      << printed(found);
+  EXPECT_TRUE(has(printed(found), advice)) << printed(found);
+  found.timing->turnSignificance = 1.9;
+  EXPECT_TRUE(has(printed(found), "1.9 standard errors better (")) << printed(found);
+  EXPECT_FALSE(has(printed(found), advice)) << printed(found);
+  found.timing->turnSignificance = 3.9;
+  found.timing->withCandidate = 0.12;  // poses or clock are off
+  EXPECT_FALSE(has(printed(found), advice)) << printed(found);
 }
 
 // The settings add to the clock that the rawlog states.

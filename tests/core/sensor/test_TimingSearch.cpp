@@ -35,6 +35,20 @@ TEST(TimingSearch, LeavesCompensatedScansAlone) {
   EXPECT_EQ(found.before, found.after);
 }
 
+TEST(TimingSearch, TellsTheBestTurnOfADriveThatIsTooShort) {
+  const ScanTiming truth{Turn::clockwise, 0.1, M_PI, 0.5};
+  std::vector<TimedScan> scans = tests::timedDrive(truth);
+  EXPECT_FALSE(searchTiming(scans, 0.1).candidate.known());
+  scans.resize(30);
+  const TimingEstimate found = searchTiming(scans, 0.1);
+  EXPECT_EQ(found.timing.turn, Turn::compensated);
+  EXPECT_GT(found.turnSignificance, 2);
+  EXPECT_LT(found.turnSignificance, kEnoughErrors);
+  EXPECT_EQ(found.candidate.turn, truth.turn);
+  EXPECT_LE(turned(found.candidate.cut, truth.cut), 31 * M_PI / 180);
+  EXPECT_LT(found.withCandidate, found.after);
+}
+
 TEST(TimingSearch, FindsTheOffsetOfTheClocks) {
   ScanTiming late{Turn::compensated};
   late.clock = 0.08;

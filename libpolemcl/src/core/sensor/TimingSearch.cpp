@@ -296,7 +296,10 @@ TimingEstimate searchAll(Search& search, double turnSeconds, bool clocks) {
     ScanTiming standing = still;
     standing.clock = best.clock;
     result.turnSignificance = search.significance(best, standing);
-    result.timing = result.turnSignificance >= kEnoughErrors ? best : standing;
+    const bool isClear = result.turnSignificance >= kEnoughErrors;
+    result.timing = isClear ? best : standing;
+    result.candidate = isClear ? ScanTiming() : best;
+    result.withCandidate = search.mean(best);
   }
   result.before = search.mean(still);
   result.after = search.mean(result.timing);

@@ -42,7 +42,10 @@ struct TimingEstimate {
   /// other timing is better.
   double turnSignificance = 0;
   double clockSignificance = 0;  ///< standard errors by which the best clock is better than 0
-  bool isStated = false;         ///< `timing` is the stated one, but for `clock`
+  /// The best turn, where it is better than none by too few standard errors; else not known().
+  ScanTiming candidate;
+  double withCandidate = 0;  ///< mean distance of a pair with it, m
+  bool isStated = false;     ///< `timing` is the stated one, but for `clock`
 };
 
 /// \brief What corrects the distance of a pole from the LiDAR: scale * distance + offset.

@@ -74,6 +74,13 @@ ScanTiming commonTiming(const std::vector<ScanSource::Scan>& scans) {
   return common.value_or(ScanTiming());
 }
 
+bool hasTimes(const mrpt::obs::CObservation& scan) {
+  ObservationPoints points{SensorOptions()};
+  points.read(scan);
+  const ObservationPoints::Loan loan(points);
+  return points.timing().has_value();
+}
+
 /// The options of a sensor identified in its own axes, for clouds with this sensor pose.
 SensorOptions mounted(const SensorIdentification& sensor, const mrpt::poses::CPose3D& pose) {
   SensorOptions options = sensor.options();
@@ -121,6 +128,7 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
   first.getSensorPose(result.sensorPose);
   if (!source.timing().movingCut) result.stated = source.timing();
   if (!result.stated.known()) result.stated = commonTiming(scans);
+  result.isTimed = source.timing().turn != Turn::automatic || hasTimes(first);
   try {
     result.sensor = identifySensor(views);
   } catch (const Error& error) {

@@ -25,6 +25,7 @@ struct RawlogInspection {
   /// As the comment of the rawlog states it, or the packets of the examined scans do. Not `known()`
   /// where they do not, or where the cut moves.
   ScanTiming stated;
+  bool isTimed = false;  ///< comment or packets state how it turns, also where the cut moves
   /// One for each examined scan; empty if the points of one are not in the order of measuring.
   std::vector<PointOrder> orders;
 };
