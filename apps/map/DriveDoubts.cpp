@@ -16,8 +16,7 @@ std::string fixesDoubt(const FixFit& fit) {
   return std::to_string(fit.given - fit.fitting) + " of " + std::to_string(fit.given) +
          " positions from satellites do not fit its path, they lie " + io::fixed(fit.distance, 2) +
          " m from it (median); the map may lie wrong on Earth by far more: a wrong clock shifts it "
-         "by "
-         "speed times time; check their clock (GPS time is 18 s ahead of UTC), the place of the "
+         "by speed times time; check their clock (GPS time is 18 s ahead of UTC), the place of the "
          "antenna and sigma";
 }
 

@@ -173,7 +173,7 @@ class MotionFiller {
     if (m_filled.contradicted == 0) m_filled.firstContradicted = m_scans[before + 1].time;
     m_isDoubted = true;
     m_coasted = 0;
-    m_velocity = velocityOf(found, secondsFrom(before, i));
+    learnVelocity(before + 1, velocityOf(found, secondsFrom(before, i)));
     const Pose2D end = compose(m_poses[before], found);
     for (std::size_t k = before + 1; k <= i; ++k) {
       m_filled.contradicted += m_isTold[k];
