@@ -1,5 +1,5 @@
 #!/bin/sh
-# A real drive on which nothing of this project was fitted or chosen, with published poses of another origin: 50 scans
+# A real drive to which nothing of this project was fitted, with published poses of another origin: 50 scans
 # of Apollo-SouthBay's ColumbiaPark (HDL-64E, 10 Hz, 70 m at 14 m/s, corrected for motion).
 # Usage: share/experiments/unseen-drive.sh REPOSITORY OUT
 #   REPOSITORY  folder of Git of github.com/Akshit21112002/ccndf as of commit 99265f77: a bare one, or .git of a clone

@@ -36,7 +36,7 @@ class PoleMotionsTest : public testing::Test {
       truth.push_back(frames[i].truth);
     }
   }
-  /// Of the odometry: 2 cm and 0.1 degree.
+  /// The covariance that the odometry states: 2 cm and 0.1 degree.
   static Eigen::Matrix3d covariance() { return Eigen::Vector3d(4e-4, 4e-4, 3e-6).asDiagonal(); }
   void forgetMotions(std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) scans[i].motion.reset();
