@@ -1,6 +1,7 @@
 #include "map/MapBuildApp.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/common/KdTree2D.h"
@@ -72,11 +73,31 @@ std::vector<LandmarkRecord> outOfSight(const LandmarkMap& inventory, const Adjus
   return left;
 }
 
+/// Whether a scan was read twice. Its poles may have been corrected for other motions.
+bool isSame(const SessionScan& a, const SessionScan& b) {
+  constexpr double near = 0.1;  // m
+  if (a.time != b.time || a.poles_robot.size() != b.poles_robot.size()) return false;
+  if (a.poles_robot.empty()) return true;
+  const PoleDetection &first = a.poles_robot[0], &other = b.poles_robot[0];
+  return std::hypot(first.x - other.x, first.y - other.y) < near;
+}
+
+/// \throws Error when a drive is one of those before: its poles would count twice.
+void requireNew(const std::filesystem::path& input, const std::vector<SessionScan>& scans,
+                const AddedSessions& before) {
+  for (const AddedSession& session : before.sessions)
+    if (session.usedCount() == session.scans.size() &&
+        std::equal(scans.begin(), scans.end(), session.scans.begin(), session.scans.end(), isSame))
+      throw Error(input.string() + ": all its scans are those of the session " + session.name +
+                  ", which is in the map already; leave it out");
+}
+
 /// \param covariances Of the poses, when they were found without truth; else empty.
 void addDrive(const MapBuildJob& job, std::size_t drive, MappingSession found,
               std::vector<Eigen::Matrix3d> covariances, MapAccumulator& sessions,
               MapBuildSummary& summary) {
   if (!job.dates.empty()) setDate(found.scans, job.dates[drive]);
+  requireNew(job.inputs[drive], found.scans, sessions.added());
   sessions.add(job.inputs[drive].filename().string(), std::move(found.scans),
                std::move(covariances));
   summary.skipped += found.skipped;
@@ -232,8 +253,9 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
   const auto paths = pathsOf(drives);
   addDrives(job, std::move(drives), sessions, summary);
   countSessions(sessions.added(), summary);
+  summary.mapping = settings.map;
   summary.map = sessions.build();
-  if (summary.map.poles.empty()) throw Error(noPolesText(summary, settings.map));
+  if (summary.map.poles.empty()) throw Error(noPolesText(summary));
   summary.twins = countTwins(summary.map.poles);
 
   LandmarkMap landmarks = sessions.withHistories(summary.map.poles);

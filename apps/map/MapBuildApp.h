@@ -44,6 +44,7 @@ struct MapBuildSummary {
   std::size_t visited = 0;            ///< scans at true poses, used or not
   std::vector<FilledMotions> filled;  ///< of each input, where poses come from odometry
   SkippedScans skipped;
+  PoleMapOptions mapping;
   PoleMapResult map;
   /// \brief How much of a session is in the map.
   struct Session {
@@ -68,8 +69,9 @@ struct MapBuildSummary {
 /// \param progress Progress of the current input; may be empty.
 /// \throws Error as readPoleSequence() and readTum(); when the truth covers less than half of the
 ///         scans of an input; when no scan is usable; when no pole was found (names the section
-///         length, the scan spacing and the counts); when `add` keeps no scans, or ones chosen by
-///         another `unvisited_m`, or has another datum.
+///         length, the scan spacing and the counts); when an input has the scans of another, or of
+///         `add`; when `add` keeps no scans, or ones chosen by another `unvisited_m`, or has
+///         another datum.
 MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
                          const ScanProgress& progress = {});
 

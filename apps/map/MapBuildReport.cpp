@@ -30,6 +30,14 @@ const char* counted(PoleCounting counting) {
   return "";
 }
 
+/// What a pole needs to be in the map.
+std::string neededText(const MapBuildSummary& summary) {
+  const double needed = summary.map.neededCount, least = summary.mapping.minCount;
+  return io::significant(needed, 3) + counted(summary.mapping.counting) +
+         " (min_count = " + io::significant(least, 4) +
+         (needed < least ? ", less as scans are far apart)" : ")");
+}
+
 /// `f_map.NAME` of each session; of equal names the second is `f_map.NAME.2`.
 void addShares(const MapBuildSummary& summary, std::map<std::string, std::string>& info) {
   for (const MapBuildSummary::Session& session : summary.sessions) {
@@ -140,17 +148,16 @@ void tellPoses(std::ostream& out, const MapBuildSummary& summary, const MapBuild
 
 }  // namespace
 
-std::string noPolesText(const MapBuildSummary& summary, const PoleMapOptions& options) {
+std::string noPolesText(const MapBuildSummary& summary) {
   const auto& map = summary.map;
   return "no pole found: " + std::to_string(summary.scans) + " scans " +
          io::fixed(scanSpacing(summary), 2) +
          " m apart on average; sections of section_length_m = " +
-         io::significant(options.sectionLength, 6) + ", " + std::to_string(map.occupiedSections) +
-         " of " + std::to_string(map.sections) + " with a scan; " + std::to_string(map.detections) +
-         " detections in " + std::to_string(map.clusters) + " places, the best with " +
-         io::significant(map.bestCount, 4) + counted(options.counting) +
-         ", min_count = " + io::significant(options.minCount, 4) +
-         " are needed (less where scans are far apart)" +
+         io::significant(summary.mapping.sectionLength, 6) + ", " +
+         std::to_string(map.occupiedSections) + " of " + std::to_string(map.sections) +
+         " with a scan; " + std::to_string(map.detections) + " detections in " +
+         std::to_string(map.clusters) + " places, the best with " +
+         io::significant(map.bestCount, 4) + ", a pole needs " + neededText(summary) +
          (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]") +
          // Poles that are found again and again fall into few places.
          (map.detections > 0 && 2 * map.clusters > map.detections
@@ -205,7 +212,8 @@ std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job) 
       << " scans over " << io::fixed(summary.map.pathLength, 1) << " m\n"
       << "sections: " << summary.map.occupiedSections << " of " << summary.map.sections
       << " with a scan; detections " << summary.map.detections << " in " << summary.map.clusters
-      << " places\n";
+      << " places\n"
+      << "a pole needs " << neededText(summary) << '\n';
   if (summary.sessions.size() > 1)
     for (const MapBuildSummary::Session& session : summary.sessions)
       out << session.name << ": " << session.used << " of " << session.scans

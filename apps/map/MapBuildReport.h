@@ -20,7 +20,7 @@ std::map<std::string, std::string> mapFacts(const AllSettings& settings,
                                             const std::map<std::string, std::string>& before);
 
 /// \brief Why no pole was found: section length, distance between scans, counts.
-std::string noPolesText(const MapBuildSummary& summary, const PoleMapOptions& options);
+std::string noPolesText(const MapBuildSummary& summary);
 
 /// \brief Signs that poses or timing are wrong: poles that contradict them, many twins. Also in the
 /// map's info, key `warnings`.

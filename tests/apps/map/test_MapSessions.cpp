@@ -123,6 +123,19 @@ TEST_F(MapSessions, RefusesWhatItCannotAddTo) {
   EXPECT_FALSE(fs::exists(folder / "m.polemap"));
 }
 
+TEST_F(MapSessions, ADriveIsNotTakenTwice) {
+  const std::string known = "two.rawlog: all its scans are those of the session two.rawlog";
+  expectFailure(map("all.ini", {"one", "two", "two"}, "twice.polemap"), {known});
+  ASSERT_EQ(map("all.ini", {"one", "two"}, "kept.polemap", {"--keep-scans"}).code, 0);
+  expectFailure(map("all.ini", {"two"}, "added.polemap", {"--add", at("kept.polemap")}), {known});
+}
+
+TEST_F(MapSessions, WhereScansAreFarApartItSaysThatFewerAreNeeded) {
+  EXPECT_HAS(map("all.ini", {"one"}, "a.polemap").out, "a pole needs 2 sections of one run");
+  EXPECT_HAS(map("all.ini", {"one"}, "b.polemap", {"--set", "map.section_length_m=0.8"}).out,
+             "(min_count = 2, less as scans are far apart)");
+}
+
 TEST_F(MapSessions, SessionsThatDisagreeOnTheDatumAreRefused) {
   const std::vector<std::string> here{"--keep-scans", "--datum", "42.25,-83.5,-1"};
   ASSERT_EQ(map("all.ini", {"one"}, "m.polemap", here).code, 0);

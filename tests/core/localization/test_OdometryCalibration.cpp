@@ -66,6 +66,38 @@ TEST(OdometryCalibration, CorrectsMotionsAndStatesWhatIsLeft) {
   EXPECT_LT(corrected.covariance(0, 0), before / 10);
 }
 
+// A comparison of 8 m that says 1.5 % +- 1 % and 0.045 +- 0.03 deg/m.
+TEST(OdometryCalibration, BelievesOneUncertainComparisonByASmallPartOnly) {
+  OdometryCalibration calibration;
+  PoseWithCovariance begin, end;
+  begin.covariance = end.covariance = Eigen::Vector3d(0.0032, 0.0032, 9e-6).asDiagonal();
+  end.mean = {8 * 1.015, 0, 8 * 0.0008};
+  calibration.add({}, Eigen::Matrix3d::Zero(), &begin);
+  calibration.add({8, 0, 0}, Eigen::Matrix3d::Zero(), &end);
+  const OdometryErrors& errors = calibration.errors();
+  EXPECT_GT(errors.scale, 0.0005);
+  EXPECT_LT(errors.scale, 0.006);
+  EXPECT_GT(errors.yaw, 0.00002);
+  EXPECT_LT(errors.yaw, 0.0003);
+  EXPECT_LT(std::abs(0.015 - errors.scale), 2 * std::sqrt(errors.covariance(0, 0)))
+      << "what is not corrected is not known";
+}
+
+TEST(OdometryCalibration, WithoutAMatchedPoleTheErrorsOfAllMotionsAddUp) {
+  const OdometryCalibration calibration;
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
+  double variance = 0, driven = 0;
+  for (const double metres : {0.5, 0.1, 4.0, 7.0, 1.0, 0.0, 2.0}) {
+    const Pose2D motion{metres, 0, 0};
+    variance += calibration.correct(motion, none).covariance(0, 0) +
+                calibration.unseenCovariance(motion, driven)(0, 0);
+    driven += metres;
+  }
+  EXPECT_NEAR(std::sqrt(variance), driven * OdometryCalibration::scaleSigma, 0.02 * driven * 0.1);
+  EXPECT_EQ(calibration.unseenCovariance({1, 0, 0}, 0.5), none) << "correct() covers the first 3 m";
+  EXPECT_EQ(OdometryCalibration(false).unseenCovariance({1, 0, 0}, 100), none);
+}
+
 TEST(OdometryCalibration, WithoutPosesItsErrorsGrowWithTheWay) {
   OdometryCalibration calibration(true);
   const Eigen::Matrix2d first = calibration.errors().covariance;

@@ -6,6 +6,7 @@
 
 #include "core/common/Deskew.h"
 #include "core/common/Transform.h"
+#include "core/localization/OdometryCalibration.h"
 #include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleCity.h"
 
@@ -40,15 +41,15 @@ class PoleLocalizationFaults : public testing::Test {
                            4e-4 * motion.yaw * motion.yaw + 1e-8)
         .asDiagonal();
   }
-  LocalizationPipeline started() const {
-    LocalizationPipeline localization(*map, options, 1);
+  LocalizationPipeline started(std::uint32_t seed = 1) const {
+    LocalizationPipeline localization(*map, options, seed);
     StartOptions start;
     start.pose = truth[0];
     localization.start(start);
     return localization;
   }
-  std::vector<LocalizationUpdate> run() const {
-    LocalizationPipeline localization = started();
+  std::vector<LocalizationUpdate> run(std::uint32_t seed = 1) const {
+    LocalizationPipeline localization = started(seed);
     std::vector<LocalizationUpdate> updates;
     for (const PoleScan& frame : frames) updates.push_back(localization.step(frame));
     return updates;
@@ -105,19 +106,22 @@ TEST_F(PoleLocalizationFaults, ALidarThatHasMovedIsDegradedByTheOther) {
   for (std::size_t i = 100; i < 200; ++i)
     for (PoleDetection& pole : frames[i].poles_robot)
       if (pole.x < 0) pole = moved({0.3, 0.2, 0.03}, pole);
-  const auto updates = run();
-  for (std::size_t i = 90; i < 100; ++i) EXPECT_EQ(updates[i].health.state, HealthState::ok) << i;
   int ok = 0, wrong = 0, byRivals = 0;
-  for (std::size_t i = 105; i < 200; ++i) {
-    ok += updates[i].health.state == HealthState::ok;
-    wrong += updates[i].health.state == HealthState::ok && error(updates[i], i) > 0.15;
-    const HealthReason reason = updates[i].health.reason;  // converging: found beside the last pose
-    byRivals += reason == HealthReason::innovation || reason == HealthReason::converging;
+  constexpr int seeds = 5;  // one alone says little: by their draws, recovery takes 2 to 4 s
+  for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+    const auto updates = run(seed);
+    for (std::size_t i = 90; i < 100; ++i) EXPECT_EQ(updates[i].health.state, HealthState::ok) << i;
+    for (std::size_t i = 105; i < 200; ++i) {
+      ok += updates[i].health.state == HealthState::ok;
+      wrong += updates[i].health.state == HealthState::ok && error(updates[i], i) > 0.15;
+      const HealthReason reason = updates[i].health.reason;  // converging: found beside the last
+      byRivals += reason == HealthReason::innovation || reason == HealthReason::converging;
+    }
+    expectOkFrom(updates, 200 + 40);
   }
-  EXPECT_LE(ok, 5);
-  EXPECT_LE(wrong, 5);
-  EXPECT_GE(byRivals, 30);
-  expectOkFrom(updates, 200 + 28);
+  EXPECT_LE(ok, 5 * seeds);
+  EXPECT_LE(wrong, 5 * seeds);
+  EXPECT_GE(byRivals, 30 * seeds);
 }
 
 // All poles lie aside, as if the LiDAR had moved.
@@ -181,6 +185,18 @@ TEST_F(PoleLocalizationFaults, NoPoleOverKilometresIsDegradedUntilPolesReturn) {
     ASSERT_NE(updates[i].health.state, HealthState::ok) << i;
   EXPECT_EQ(updates[blind + 40].health.reason, HealthReason::noPoles);
   expectOkFrom(updates, back + 100);
+}
+
+TEST_F(PoleLocalizationFaults, WithoutPolesTheSpreadCoversAnErrorOfTheOdometryThatStays) {
+  drive(210);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (i > 3) frames[i].poles_robot.clear();
+    frames[i].motion->mean.yaw += OdometryCalibration::yawSigma * frames[i].motion->mean.x;
+  }
+  const LocalizationUpdate last = run().back();
+  const double apart = std::abs(wrapAngle(last.estimate->mean.yaw - truth.back().yaw));
+  ASSERT_GT(apart, 0.08) << "nothing told the error";
+  EXPECT_LT(apart, 2 * std::sqrt(last.estimate->covariance(2, 2)));
 }
 
 TEST_F(PoleLocalizationFaults, AGapOfMinutesIsNamedUntilPolesConfirmThePose) {

@@ -16,6 +16,7 @@ constexpr double kYawWalk = 1.7e-5;  // growth of the yaw bias's, rad/m per root
 constexpr double kRest = 0.001;      // m, rad: smaller motions are those of a vehicle that stands
 constexpr double kTogether = 3;      // distance over which errors of motions add up, m
 constexpr double kFurthest = 4;      // greatest innovation that is used, standard deviations
+constexpr double kNone = 0.8;        // probability that the odometry has no such error
 
 Eigen::Vector3d asVector(const Pose2D& pose) {
   return {pose.x, pose.y, pose.yaw};
@@ -23,6 +24,14 @@ Eigen::Vector3d asVector(const Pose2D& pose) {
 
 Pose2D corrected(const Pose2D& motion, double scale, double yaw) {
   return {(1 + scale) * motion.x, (1 + scale) * motion.y, motion.yaw + yaw * motion.x};
+}
+
+/// Probability that the odometry has an error, from the density at zero before and after the
+/// comparisons (Dickey 1971).
+double probabilityOfError(double value, double variance, double sigmaBefore) {
+  const double densities =
+      sigmaBefore / std::sqrt(variance) * std::exp(-value * value / (2 * variance));
+  return (1 - kNone) / (1 - kNone + kNone * densities);
 }
 
 /// Covariance of a pose's own error, in the frame of that pose.
@@ -49,19 +58,42 @@ OdometryCalibration::OdometryCalibration(bool enabled) : m_enabled(enabled) {
   m_errors.covariance = Eigen::Vector2d(scaleSigma, yawSigma).cwiseAbs2().asDiagonal();
 }
 
+OdometryErrors OdometryCalibration::errors() const {
+  OdometryErrors result = m_errors;
+  const double scale = probabilityOfError(m_errors.scale, m_errors.covariance(0, 0), scaleSigma),
+               yaw = probabilityOfError(m_errors.yaw, m_errors.covariance(1, 1), yawSigma);
+  result.scale *= scale;
+  result.yaw *= yaw;
+  result.covariance(0, 0) += scale * (1 - scale) * m_errors.scale * m_errors.scale;
+  result.covariance(1, 1) += yaw * (1 - yaw) * m_errors.yaw * m_errors.yaw;
+  return result;
+}
+
+/// Covariance of a motion by what is not known of the errors.
+Eigen::Matrix3d OdometryCalibration::unknownOf(const Pose2D& motion) const {
+  Eigen::Matrix<double, 3, 2> byErrors;
+  byErrors << motion.x, 0, motion.y, 0, 0, motion.x;
+  return symmetrized<3>(byErrors * errors().covariance * byErrors.transpose());
+}
+
 CorrectedMotion OdometryCalibration::correct(const Pose2D& motion,
                                              const Eigen::Matrix3d& covariance) const {
   if (!m_enabled) return {motion, covariance};
-  Eigen::Matrix<double, 3, 2> byErrors;
-  byErrors << motion.x, 0, motion.y, 0, 0, motion.x;
   // The errors of successive motions are the same ones: over a distance they add up as they are,
   // not as their squares. A filter takes motions for independent, so each gets its share of the
   // sum.
   const double metres = std::hypot(motion.x, motion.y);
   const double share = metres > 0 ? std::max(1.0, kTogether / metres) : 1;
-  return {
-      corrected(motion, m_errors.scale, m_errors.yaw),
-      covariance + share * symmetrized<3>(byErrors * m_errors.covariance * byErrors.transpose())};
+  const OdometryErrors known = errors();
+  return {corrected(motion, known.scale, known.yaw), covariance + share * unknownOf(motion)};
+}
+
+Eigen::Matrix3d OdometryCalibration::unseenCovariance(const Pose2D& motion, double unseen) const {
+  const double metres = std::hypot(motion.x, motion.y);
+  // Shares that grow as twice the distance add up to its square.
+  const double together = 2 * unseen + metres;
+  if (!m_enabled || !(metres > 0) || together <= kTogether) return Eigen::Matrix3d::Zero();
+  return (together - std::max(metres, kTogether)) / metres * unknownOf(motion);
 }
 
 void OdometryCalibration::add(const Pose2D& motion, const Eigen::Matrix3d& covariance,

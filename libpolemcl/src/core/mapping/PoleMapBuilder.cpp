@@ -158,15 +158,15 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
       boxes ? joinOverlappingBoxes(observations)
             : clusterObservations(observations, {options.mergeDistance, options.apartShare});
 
-  const double needed = neededCount(sections, options);
   PoleMapResult result;
+  result.neededCount = neededCount(sections, options);
   for (const std::vector<std::uint32_t>& group : groups) {
     const std::vector<Sighting> sightings = sightingsOf(group, observations, keyframes);
     const double count = options.counting == PoleCounting::members
                              ? static_cast<double>(group.size())
                              : bestRun(sightings, sections.occupied, options);
     result.bestCount = std::max(result.bestCount, count);
-    if (count < needed) continue;
+    if (count < result.neededCount) continue;
     const MapPole pole = boxes ? plainMean(observations, group) : fuse(observations, group);
     if (seenFromEnough(pole, sightings, sections.occupied, scans, options))
       result.poles.push_back(pole);

@@ -166,6 +166,7 @@ void LocalizationPipeline::forgetPose() {
   m_search = {};
   m_searchedAt = 0;
   m_matches.clear();
+  m_unseen = 0;
   m_hasPose = m_stepped = m_hadPoles = m_mistrusted = false;
 }
 
@@ -202,6 +203,8 @@ LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
   m_isFirst = !m_hadPoles;
   m_hadPoles |= !frame.poles_robot.empty();
   m_tracked.poles_robot = polesForFilter(motion, covariance, frame.poles_robot);
+  if (m_stepped && update.motion != OdometryVerdict::contradicted)
+    m_tracked.motion->covariance += m_calibration.unseenCovariance(motion, m_unseen);
 
   update.poles = frame.poles_robot.size();
   if (m_hasPose) track(frame, metres, update);
@@ -312,6 +315,9 @@ void LocalizationPipeline::track(const PoleScan& frame, double metres, Localizat
   input.time = frame.time;
   input.metres = metres;
   m_matches = match(frame, estimate);
+  const bool seen = std::any_of(m_matches.begin(), m_matches.end(),
+                                [](const PoleMatch& match) { return match.matched; });
+  m_unseen = seen ? 0 : m_unseen + metres;
   input.matches = m_matches;
   if (!m_map.coarse)
     input.rival =

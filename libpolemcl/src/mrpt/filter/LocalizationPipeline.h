@@ -180,6 +180,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
   bool m_isFirst = false;     ///< no frame before this one had poles
   bool m_mistrusted = false;  ///< the submap was restarted because poles did not match
   std::size_t m_searches = 0;
+  double m_unseen = 0;      ///< distance since a pole was last matched, m
   double m_time = 0;        ///< time of the last frame, s
   double m_searchedAt = 0;  ///< distance travelled in the submap at the last search, m
   double m_searchTime = 0;  ///< time of the last search, s

@@ -94,7 +94,8 @@ struct PoleMapResult {
   std::size_t keyframes = 0;         ///< one scan of each occupied section, or all
   std::size_t detections = 0;        ///< used
   std::size_t clusters = 0;          ///< before counting
-  double bestCount = 0;  ///< greatest `counting` of a pole; minCount, or less, is needed
+  double neededCount = 0;            ///< minCount, or less where scans are far apart
+  double bestCount = 0;              ///< greatest `counting` of a pole
 };
 
 /// \brief Builds the map from scans in the order they were driven. The result does not depend on
