@@ -37,7 +37,8 @@ struct Bench {
 }  // namespace
 
 TEST(OdometryCalibration, FindsScaleAndYawBiasWithinItsSigmas) {
-  for (const auto& [scale, yaw] : {std::pair{0.05, 0.0009}, std::pair{-0.03, -0.0003}}) {
+  for (const auto& [scale, yaw] :
+       {std::pair{0.05, 0.0009}, std::pair{-0.03, -0.0003}, std::pair{0.01, 0.00017}}) {
     Bench bench(scale, yaw);
     bench.drive(200);
     const OdometryErrors& errors = bench.calibration.errors();

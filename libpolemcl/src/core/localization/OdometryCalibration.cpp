@@ -16,7 +16,8 @@ constexpr double kYawWalk = 1.7e-5;  // growth of the yaw bias's, rad/m per root
 constexpr double kRest = 0.001;      // m, rad: smaller motions are those of a vehicle that stands
 constexpr double kTogether = 3;      // distance over which errors of motions add up, m
 constexpr double kFurthest = 4;      // greatest innovation that is used, standard deviations
-constexpr double kNone = 0.8;        // probability that the odometry has no such error
+constexpr double kLogOdds = -1.4;    // at the start, that the odometry has errors that stay: 0.2
+constexpr double kLeastLogOdds = -4, kMostLogOdds = 12;  // errors that begin later are noticed
 
 Eigen::Vector3d asVector(const Pose2D& pose) {
   return {pose.x, pose.y, pose.yaw};
@@ -26,12 +27,17 @@ Pose2D corrected(const Pose2D& motion, double scale, double yaw) {
   return {(1 + scale) * motion.x, (1 + scale) * motion.y, motion.yaw + yaw * motion.x};
 }
 
-/// Probability that the odometry has an error, from the density at zero before and after the
-/// comparisons (Dickey 1971).
-double probabilityOfError(double value, double variance, double sigmaBefore) {
-  const double densities =
-      sigmaBefore / std::sqrt(variance) * std::exp(-value * value / (2 * variance));
-  return (1 - kNone) / (1 - kNone + kNone * densities);
+/// Logarithm of a normal density, but for a constant.
+double logDensity(const Eigen::Vector3d& deviation, const Eigen::Matrix3d& covariance) {
+  return -0.5 *
+         (deviation.dot(covariance.inverse() * deviation) + std::log(covariance.determinant()));
+}
+
+/// Covariance of a motion by what is not known of the odometry's errors.
+Eigen::Matrix3d covarianceBy(const Eigen::Matrix2d& errors, const Pose2D& motion) {
+  Eigen::Matrix<double, 3, 2> byErrors;
+  byErrors << motion.x, 0, motion.y, 0, 0, motion.x;
+  return symmetrized<3>(byErrors * errors * byErrors.transpose());
 }
 
 /// Covariance of a pose's own error, in the frame of that pose.
@@ -54,26 +60,18 @@ Eigen::Matrix3d motionCovariance(const PoseWithCovariance& from, const PoseWithC
 
 }  // namespace
 
-OdometryCalibration::OdometryCalibration(bool enabled) : m_enabled(enabled) {
+OdometryCalibration::OdometryCalibration(bool enabled) : m_enabled(enabled), m_logOdds(kLogOdds) {
   m_errors.covariance = Eigen::Vector2d(scaleSigma, yawSigma).cwiseAbs2().asDiagonal();
 }
 
 OdometryErrors OdometryCalibration::errors() const {
+  const double probability = 1 / (1 + std::exp(-m_logOdds));
+  const Eigen::Vector2d all(m_errors.scale, m_errors.yaw);
   OdometryErrors result = m_errors;
-  const double scale = probabilityOfError(m_errors.scale, m_errors.covariance(0, 0), scaleSigma),
-               yaw = probabilityOfError(m_errors.yaw, m_errors.covariance(1, 1), yawSigma);
-  result.scale *= scale;
-  result.yaw *= yaw;
-  result.covariance(0, 0) += scale * (1 - scale) * m_errors.scale * m_errors.scale;
-  result.covariance(1, 1) += yaw * (1 - yaw) * m_errors.yaw * m_errors.yaw;
+  result.scale *= probability;
+  result.yaw *= probability;
+  result.covariance += probability * (1 - probability) * all * all.transpose();
   return result;
-}
-
-/// Covariance of a motion by what is not known of the errors.
-Eigen::Matrix3d OdometryCalibration::unknownOf(const Pose2D& motion) const {
-  Eigen::Matrix<double, 3, 2> byErrors;
-  byErrors << motion.x, 0, motion.y, 0, 0, motion.x;
-  return symmetrized<3>(byErrors * errors().covariance * byErrors.transpose());
 }
 
 CorrectedMotion OdometryCalibration::correct(const Pose2D& motion,
@@ -85,7 +83,8 @@ CorrectedMotion OdometryCalibration::correct(const Pose2D& motion,
   const double metres = std::hypot(motion.x, motion.y);
   const double share = metres > 0 ? std::max(1.0, kTogether / metres) : 1;
   const OdometryErrors known = errors();
-  return {corrected(motion, known.scale, known.yaw), covariance + share * unknownOf(motion)};
+  return {corrected(motion, known.scale, known.yaw),
+          covariance + share * covarianceBy(known.covariance, motion)};
 }
 
 Eigen::Matrix3d OdometryCalibration::unseenCovariance(const Pose2D& motion, double unseen) const {
@@ -93,7 +92,11 @@ Eigen::Matrix3d OdometryCalibration::unseenCovariance(const Pose2D& motion, doub
   // Shares that grow as twice the distance add up to its square.
   const double together = 2 * unseen + metres;
   if (!m_enabled || !(metres > 0) || together <= kTogether) return Eigen::Matrix3d::Zero();
-  return (together - std::max(metres, kTogether)) / metres * unknownOf(motion);
+  // Only what stays adds up like this: without what the errors may have changed by since then.
+  Eigen::Matrix2d stays = errors().covariance;
+  stays(0, 0) = std::max(0.0, stays(0, 0) - unseen * kScaleWalk * kScaleWalk);
+  stays(1, 1) = std::max(0.0, stays(1, 1) - unseen * kYawWalk * kYawWalk);
+  return (together - std::max(metres, kTogether)) / metres * covarianceBy(stays, motion);
 }
 
 void OdometryCalibration::add(const Pose2D& motion, const Eigen::Matrix3d& covariance,
@@ -155,27 +158,31 @@ Eigen::Matrix3d OdometryCalibration::walkedCovariance() const {
   return covariance;
 }
 
-/// Kalman update with the motion from m_begin to `estimate`.
+/// How far the motion from m_begin to `estimate` is from that of the steps with these errors.
+Eigen::Vector3d OdometryCalibration::innovation(const PoseWithCovariance& estimate, double scale,
+                                                double yaw) const {
+  Eigen::Vector3d result =
+      asVector(relative(m_begin.mean, estimate.mean)) - asVector(chain(scale, yaw));
+  result.z() = wrapAngle(result.z());
+  return result;
+}
+
+/// Kalman update with the motion from m_begin to `estimate`. What it says of odometry without such
+/// errors is weighed against what the Kalman filter expected.
 void OdometryCalibration::compare(const PoseWithCovariance& estimate) {
-  const Pose2D expected = chain(m_errors.scale, m_errors.yaw);
+  const Eigen::Vector3d found = innovation(estimate, m_errors.scale, m_errors.yaw);
   constexpr double small = 1e-6;
   Eigen::Matrix<double, 3, 2> H;
-  const auto derivative = [&](const Pose2D& changed) {
-    Eigen::Vector3d change = asVector(changed) - asVector(expected);
-    change.z() = wrapAngle(change.z());
-    return Eigen::Vector3d(change / small);
-  };
-  H.col(0) = derivative(chain(m_errors.scale + small, m_errors.yaw));
-  H.col(1) = derivative(chain(m_errors.scale, m_errors.yaw + small));
-  Eigen::Matrix3d R = motionCovariance(m_begin, estimate);
-  R += walkedCovariance();
-  Eigen::Vector3d innovation = asVector(relative(m_begin.mean, estimate.mean)) - asVector(expected);
-  innovation.z() = wrapAngle(innovation.z());
+  H.col(0) = (found - innovation(estimate, m_errors.scale + small, m_errors.yaw)) / small;
+  H.col(1) = (found - innovation(estimate, m_errors.scale, m_errors.yaw + small)) / small;
+  const Eigen::Matrix3d R = motionCovariance(m_begin, estimate) + walkedCovariance();
   const Eigen::Matrix3d S = H * m_errors.covariance * H.transpose() + R;
   const Eigen::Matrix3d inverse = S.inverse();
-  if (!(innovation.dot(inverse * innovation) < kFurthest * kFurthest)) return;
+  if (!(found.dot(inverse * found) < kFurthest * kFurthest)) return;
+  const double evidence = logDensity(found, S) - logDensity(innovation(estimate, 0, 0), R);
+  m_logOdds = std::clamp(m_logOdds + evidence, kLeastLogOdds, kMostLogOdds);
   const Eigen::Matrix<double, 2, 3> gain = m_errors.covariance * H.transpose() * inverse;
-  const Eigen::Vector2d change = gain * innovation;
+  const Eigen::Vector2d change = gain * found;
   m_errors.scale += change.x();
   m_errors.yaw += change.y();
   m_errors.covariance =

@@ -55,14 +55,15 @@ class POLEMCL_EXPORT OdometryCalibration {
     Pose2D motion;
     Eigen::Matrix3d covariance;
   };
-  Eigen::Matrix3d unknownOf(const Pose2D& motion) const;
   void addRest(const Pose2D& motion, const Eigen::Matrix3d& covariance);
   Pose2D chain(double scale, double yaw) const;
   Eigen::Matrix3d walkedCovariance() const;
+  Eigen::Vector3d innovation(const PoseWithCovariance& estimate, double scale, double yaw) const;
   void compare(const PoseWithCovariance& estimate);
 
   bool m_enabled;
   OdometryErrors m_errors;     ///< of the Kalman filter
+  double m_logOdds;            ///< that there are such errors
   PoseWithCovariance m_begin;  ///< pose at which the steps begin
   std::deque<Step> m_steps;    ///< as the odometry has them
   double m_driven = 0;         ///< length of the steps, m

@@ -71,8 +71,12 @@ class MotionFiller {
 
   void move(std::size_t i, const PoseWithCovariance& motion) {
     m_scans[i].motion = motion;
-    m_poses[i] = compose(m_poses[i - 1], motion.mean);
-    m_spent[i] = m_spent[i - 1] + motion.covariance;
+    moveAsTold(i);
+  }
+
+  void moveAsTold(std::size_t i) {
+    m_poses[i] = compose(m_poses[i - 1], m_scans[i].motion->mean);
+    m_spent[i] = m_spent[i - 1] + m_scans[i].motion->covariance;
   }
 
   void fillMissing(std::size_t i) {
@@ -150,7 +154,7 @@ class MotionFiller {
 
   /// A motion of the odometry, unless the poles contradict it.
   void take(std::size_t i) {
-    move(i, *m_scans[i].motion);
+    moveAsTold(i);
     Verdict verdict = Verdict::open;  // over the longest time
     for (const std::size_t before : compared(i)) {
       const Judgement judged = judge(before, i);
