@@ -41,7 +41,7 @@ TEST(OdometryCalibration, FindsScaleAndYawBiasWithinItsSigmas) {
        {std::pair{0.05, 0.0009}, std::pair{-0.03, -0.0003}, std::pair{0.01, 0.00017}}) {
     Bench bench(scale, yaw);
     bench.drive(200);
-    const OdometryErrors& errors = bench.calibration.errors();
+    const OdometryErrors errors = bench.calibration.errors();
     EXPECT_NEAR(errors.scale, scale, 0.003);
     EXPECT_NEAR(errors.yaw, yaw, 0.0001);
     EXPECT_LT(std::abs(errors.scale - scale), 4 * std::sqrt(errors.covariance(0, 0)));
@@ -75,13 +75,18 @@ TEST(OdometryCalibration, BelievesOneUncertainComparisonByASmallPartOnly) {
   end.mean = {8 * 1.015, 0, 8 * 0.0008};
   calibration.add({}, Eigen::Matrix3d::Zero(), &begin);
   calibration.add({8, 0, 0}, Eigen::Matrix3d::Zero(), &end);
-  const OdometryErrors& errors = calibration.errors();
+  const OdometryErrors errors = calibration.errors();
   EXPECT_GT(errors.scale, 0.0005);
   EXPECT_LT(errors.scale, 0.006);
   EXPECT_GT(errors.yaw, 0.00002);
   EXPECT_LT(errors.yaw, 0.0003);
   EXPECT_LT(std::abs(0.015 - errors.scale), 2 * std::sqrt(errors.covariance(0, 0)))
       << "what is not corrected is not known";
+
+  OdometryCalibration sure(true, false);
+  sure.add({}, Eigen::Matrix3d::Zero(), &begin);
+  sure.add({8, 0, 0}, Eigen::Matrix3d::Zero(), &end);
+  EXPECT_GT(sure.errors().scale, 2 * errors.scale);
 }
 
 TEST(OdometryCalibration, WithoutAMatchedPoleTheErrorsOfAllMotionsAddUp) {

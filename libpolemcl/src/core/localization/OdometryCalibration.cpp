@@ -60,7 +60,10 @@ Eigen::Matrix3d motionCovariance(const PoseWithCovariance& from, const PoseWithC
 
 }  // namespace
 
-OdometryCalibration::OdometryCalibration(bool enabled) : m_enabled(enabled), m_logOdds(kLogOdds) {
+OdometryCalibration::OdometryCalibration(bool enabled, bool doubted)
+    : m_enabled(enabled),
+      m_leastLogOdds(doubted ? kLeastLogOdds : kMostLogOdds),
+      m_logOdds(doubted ? kLogOdds : kMostLogOdds) {
   m_errors.covariance = Eigen::Vector2d(scaleSigma, yawSigma).cwiseAbs2().asDiagonal();
 }
 
@@ -180,7 +183,7 @@ void OdometryCalibration::compare(const PoseWithCovariance& estimate) {
   const Eigen::Matrix3d inverse = S.inverse();
   if (!(found.dot(inverse * found) < kFurthest * kFurthest)) return;
   const double evidence = logDensity(found, S) - logDensity(innovation(estimate, 0, 0), R);
-  m_logOdds = std::clamp(m_logOdds + evidence, kLeastLogOdds, kMostLogOdds);
+  m_logOdds = std::clamp(m_logOdds + evidence, m_leastLogOdds, kMostLogOdds);
   const Eigen::Matrix<double, 2, 3> gain = m_errors.covariance * H.transpose() * inverse;
   const Eigen::Vector2d change = gain * found;
   m_errors.scale += change.x();

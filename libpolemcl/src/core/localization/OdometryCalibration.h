@@ -33,7 +33,9 @@ class POLEMCL_EXPORT OdometryCalibration {
   static constexpr double scaleSigma = 0.02, yawSigma = 0.00052;
 
   /// \param enabled false: the odometry is taken as it is.
-  explicit OdometryCalibration(bool enabled = true);
+  /// \param doubted true: the odometry may have no such errors, and what is corrected depends on
+  /// how probable they are. false: the estimate is corrected as it is.
+  explicit OdometryCalibration(bool enabled = true, bool doubted = true);
 
   /// \brief The motion without the errors known of, with their uncertainty in its covariance.
   /// \param motion, covariance As the odometry has them.
@@ -63,6 +65,7 @@ class POLEMCL_EXPORT OdometryCalibration {
 
   bool m_enabled;
   OdometryErrors m_errors;     ///< of the Kalman filter
+  double m_leastLogOdds;       ///< of m_logOdds
   double m_logOdds;            ///< that there are such errors
   PoseWithCovariance m_begin;  ///< pose at which the steps begin
   std::deque<Step> m_steps;    ///< as the odometry has them

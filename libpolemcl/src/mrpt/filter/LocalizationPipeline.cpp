@@ -112,7 +112,7 @@ LocalizationPipeline::LocalizationPipeline(LocalizationMap map, const Localizati
       m_filter(m_map.poles, options.filter, seed),
       m_localMaps(options.tracking.localMaps),
       m_odometryMonitor(options.monitorOdometry),
-      m_calibration(options.calibrateOdometry),
+      m_calibration(newCalibration()),
       m_monitor(options.maxGap) {}
 
 void LocalizationPipeline::start(const StartOptions& start) {
@@ -146,7 +146,7 @@ void LocalizationPipeline::initializeGlobally(const std::optional<SearchArea>& a
   }
   forgetPose();
   m_area = area;
-  m_calibration = OdometryCalibration(m_options.calibrateOdometry);
+  m_calibration = newCalibration();
   m_searches = 0;
   m_started = true;
   m_isCutOff = false;
@@ -230,6 +230,11 @@ PoleScan LocalizationPipeline::calibrated(PoleScan frame) const {
       m_calibration.correct(frame.motion->mean, frame.motion->covariance);
   frame.motion = PoseWithCovariance{motion.motion, motion.covariance};
   return frame;
+}
+
+/// On a coarse map, comparisons are too uncertain to tell whether the odometry errs.
+OdometryCalibration LocalizationPipeline::newCalibration() const {
+  return OdometryCalibration(m_options.calibrateOdometry, !m_map.coarse);
 }
 
 /// Learns the errors of the odometry while the pose is certain.

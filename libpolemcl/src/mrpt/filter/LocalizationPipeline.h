@@ -139,6 +139,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
  private:
   void forgetPose();
   bool isCutOff(const PoleScan& frame) const;
+  OdometryCalibration newCalibration() const;
   PoleScan calibrated(PoleScan frame) const;
   void calibrate(const PoseWithCovariance& motion, const LocalizationUpdate& update);
   PoleScan deskewed(PoleScan frame);
