@@ -142,6 +142,17 @@ TEST(OdometryCalibration, AJumpOfThePoseIsNoScale) {
   EXPECT_NEAR(bench.calibration.errors().scale, 0, 0.003);
 }
 
+TEST(OdometryCalibration, PosesThatAreExactInSomeDirectionsDoNoHarm) {
+  OdometryCalibration calibration;
+  PoseWithCovariance begin, end;
+  end.mean.x = 8.2;
+  begin.covariance(1, 1) = end.covariance(1, 1) = 1e-4;
+  calibration.add({}, Eigen::Matrix3d::Zero(), &begin);
+  calibration.add({8, 0, 0}, Eigen::Matrix3d::Zero(), &end);
+  EXPECT_TRUE(std::isfinite(calibration.errors().scale));
+  EXPECT_TRUE(calibration.errors().covariance.allFinite());
+}
+
 TEST(OdometryCalibration, SwitchedOffItChangesNothing) {
   const OdometryCalibration calibration(false);
   const CorrectedMotion motion = calibration.correct({1, 2, 3}, Eigen::Matrix3d::Identity());

@@ -183,7 +183,8 @@ void OdometryCalibration::compare(const PoseWithCovariance& estimate) {
   const Eigen::Matrix3d inverse = S.inverse();
   if (!(found.dot(inverse * found) < kFurthest * kFurthest)) return;
   const double evidence = logDensity(found, S) - logDensity(innovation(estimate, 0, 0), R);
-  m_logOdds = std::clamp(m_logOdds + evidence, m_leastLogOdds, kMostLogOdds);
+  if (std::isfinite(evidence))  // covariances may be zero
+    m_logOdds = std::clamp(m_logOdds + evidence, m_leastLogOdds, kMostLogOdds);
   const Eigen::Matrix<double, 2, 3> gain = m_errors.covariance * H.transpose() * inverse;
   const Eigen::Vector2d change = gain * found;
   m_errors.scale += change.x();
