@@ -120,18 +120,18 @@ std::vector<PoleScan> seenMoving(std::vector<PoleScan> frames, const std::vector
   return frames;
 }
 
-// With 0.1 s for a turn, on a vehicle with 5 m/s, poles at the sides are off by 12 cm along the
-// way, those behind by 25 cm.
+// With 0.12 s for a turn, on a vehicle with 5 m/s, poles at the sides are off by 15 cm along the
+// way, those behind by 30 cm.
 TEST_F(PoleLocalizationTest, PolesMeasuredWhileMovingAreCorrected) {
   driveFrom(1, 145);  // then the way turns round on the spot, which no vehicle does
-  std::vector<PoleScan> moving = seenMoving(frames, truth, 0.1);
+  std::vector<PoleScan> moving = seenMoving(frames, truth, 0.12);
   for (PoleScan& frame : moving) frame.velocity.reset();
   std::vector<PoleScan> uncorrected = moving;
   for (PoleScan& frame : uncorrected)
     for (PoleDetection& pole : frame.poles_robot) pole.timeOffset = 0;
   const double standing = meanError(frames);
   EXPECT_LT(meanError(moving), 1.2 * standing);
-  EXPECT_GT(meanError(uncorrected), 1.8 * standing);
+  EXPECT_GT(meanError(uncorrected), 2 * standing);
 }
 
 // Odometry that states its velocity, 5 % too great as its motions are: both are corrected.
