@@ -2,6 +2,7 @@
 
 #include <ostream>
 
+#include "core/common/Angles.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -25,10 +26,20 @@ void print(std::ostream& out, const LidarCounts& lidar) {
         << "[sensor:" << lidar.label << "]\n";
 }
 
+void print(std::ostream& out, const std::string& label, const UntoldTurn& turn) {
+  out << "scans of " << (label.empty() ? "the LiDAR" : label)
+      << " look raw: their points are in the order of measuring, " << name(turn.turn)
+      << ", and begin up to " << io::fixed(turn.arc / degree, 0)
+      << " deg apart; [sensor] turn = " << name(turn.turn)
+      << ", moving_cut = true corrects them for the motion during a turn, turn = compensated says "
+         "that they are\n";
+}
+
 }  // namespace
 
 void printSensors(std::ostream& out, const SequenceCounts& counts) {
   for (const LidarCounts& lidar : counts.lidars) print(out, lidar);
+  for (const auto& [label, turn] : counts.untoldTurns) print(out, label, turn);
   for (const std::string& label : counts.otherOdometry)
     out << "odometry of a second sensor, not used: " << label << '\n';
   if (counts.otherSensors == 0) return;

@@ -16,9 +16,8 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr double kMovingArc = 10 * degree;  ///< rad; wider than lasers of one firing differ
-constexpr double kUsualDistance = 0.08;     ///< m; see share/doc/motion.md
-constexpr double kHalfSure = 2;             ///< standard errors by which a turn is worth a try
+constexpr double kUsualDistance = 0.08;  ///< m; see share/doc/motion.md
+constexpr double kHalfSure = 2;          ///< standard errors by which a turn is worth a try
 
 /// Models with a configuration of their own.
 constexpr std::pair<const char*, const char*> kShipped[] = {
@@ -102,26 +101,8 @@ void printPresets(std::ostream& out, const RawlogInspection& inspection) {
     out << "fits              no preset; model = table with the elevations above\n";
 }
 
-/// The arc in which all scans begin, rad; 0 if the order of their points does not tell it.
-double beginArc(const std::vector<PointOrder>& orders) {
-  double least = 0, most = 0;
-  for (const PointOrder& order : orders) {
-    if (order.turn != orders.front().turn) return 0;
-    const double away = std::remainder(order.begin - orders.front().begin, 2 * M_PI);
-    least = std::min(least, away);
-    most = std::max(most, away);
-  }
-  return most - least;
-}
-
-std::string nameOf(Turn turn) {
-  for (const auto& [each, name] : turnNames())
-    if (each == turn) return name;
-  return {};
-}
-
 void printCut(std::ostream& out, const ScanTiming& timing, double arc) {
-  out << nameOf(timing.turn);
+  out << name(timing.turn);
   if (!timing.known()) {
     out << ", as far as the poles show";
     return;
@@ -134,7 +115,7 @@ void printCut(std::ostream& out, const ScanTiming& timing, double arc) {
     out << ", stamped in the middle of the turn";
   else
     out << ", stamped at " << io::fixed(timing.stamp, 2) << " of the turn";
-  if (!timing.movingCut && arc > kMovingArc)
+  if (!timing.movingCut && arc > kMovingBegin)
     out << "\n                  but the scans begin at points " << degrees(arc, 0)
         << " deg apart: no single cut fits them";
 }
@@ -153,7 +134,8 @@ double clockOffset(const Inspection& inspection) {
 /// The turn that the order of the points tells, where scans begin far apart and nothing says that
 /// they are corrected for motion.
 std::optional<ScanTiming> turnOfOrder(const RawlogInspection& scans) {
-  if (beginArc(scans.orders) <= kMovingArc || scans.isTimed || scans.sensor.beams.origin.slide != 0)
+  if (beginArc(scans.orders) <= kMovingBegin || scans.isTimed ||
+      scans.sensor.beams.origin.slide != 0)
     return std::nullopt;
   ScanTiming timing;
   timing.turn = scans.orders.front().turn;
@@ -162,7 +144,7 @@ std::optional<ScanTiming> turnOfOrder(const RawlogInspection& scans) {
 }
 
 std::string settingsOf(const ScanTiming& timing) {
-  return "turn = " + nameOf(timing.turn) + ", " +
+  return "turn = " + name(timing.turn) + ", " +
          (timing.movingCut ? "moving_cut = true" : "cut_deg = " + degrees(timing.cut, 0));
 }
 
@@ -172,7 +154,7 @@ void printDoubt(std::ostream& out, const Inspection& inspection) {
   const std::optional<TimingEstimate>& found = inspection.timing;
   std::optional<ScanTiming> likely = turnOfOrder(inspection.sensor);
   if (likely)
-    out << "                  The points are in the order of measuring, " << nameOf(likely->turn)
+    out << "                  The points are in the order of measuring, " << name(likely->turn)
         << ", and begin up to\n                  " << degrees(beginArc(inspection.sensor.orders), 0)
         << " deg apart, as those of raw scans"
         << (found ? "; poses found from raw scans hide it.\n" : ".\n");
@@ -306,7 +288,7 @@ bool cutAtFirstPoint(ScanTiming& timing, Turn turn) {
 /// agree; and the ranges.
 void searchDrive(const InspectOptions& options, Inspection& result, const ScanProgress& progress) {
   const std::vector<PointOrder>& orders = result.sensor.orders;
-  if (beginArc(orders) <= kMovingArc) {
+  if (beginArc(orders) <= kMovingBegin) {
     searchDrive(options, false, result, progress);
     return;
   }

@@ -53,9 +53,7 @@ std::string ownSensorPose(Dataset dataset) {
 std::string ownTiming(Dataset dataset) {
   const ScanTiming timing = datasetTiming(dataset);
   if (dataset == Dataset::rosbag2) return "scan_timing.ini, if there, else the times of the points";
-  for (const auto& [value, name] : turnNames())
-    if (value == timing.turn) return value == Turn::automatic ? "scan_timing.ini, if there" : name;
-  return {};
+  return timing.turn == Turn::automatic ? "scan_timing.ini, if there" : name(timing.turn);
 }
 
 /// What the robot and its LiDAR did: pose, turn, truth.

@@ -20,12 +20,6 @@ bool agree(const ScanTiming& set, const ScanTiming& stated) {
   return 2 * apart < directions;
 }
 
-const std::string& nameOf(Turn turn) {
-  for (const auto& [value, word] : turnNames())
-    if (value == turn) return word;
-  throw Error("a turn without a name");
-}
-
 }  // namespace
 
 std::vector<std::string> turnWarnings(const ReadScan& scan, const SequenceOptions& options) {
@@ -40,7 +34,7 @@ std::vector<std::string> turnWarnings(const ReadScan& scan, const SequenceOption
     points.read(*source);
     if (!points.timing() || agree(sensor.timing, *points.timing())) continue;
     warnings.push_back("[sensor" + (lidar ? ":" + source->sensorLabel : "") + "] turn = " +
-                       nameOf(sensor.timing.turn) + " and the keys beside it contradict " +
+                       name(sensor.timing.turn) + " and the keys beside it contradict " +
                        "the times that the LiDAR " + source->sensorLabel +
                        " states: poses of a moving robot get worse; set turn = auto");
   }

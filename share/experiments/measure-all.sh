@@ -7,8 +7,8 @@
 #              tells the commit, the day and the minutes of each. What is there is not measured again
 #   NAME       experiments, as measured.csv names them; all unless given
 # Copy OUT/reports/ to share/reports/ then. An experiment that fails is told at the end; the others go on.
-# Not among them: unseen-drive.sh, which needs a repository; scan_matching.py and train-classifier.sh, which need
-# programs of others or hours; bench_extraction, bench_step and bench_global (speed.json), which need a quiet machine.
+# Not among them: unseen-drive.sh and nclt-session.sh, which need repositories of others; scan_matching.py and
+# train-classifier.sh, which need programs of others or hours. For speed the machine must do nothing else.
 # Programs: build/bin, or POLEMCL_BIN, of the commit that is checked out. Needs jq, python3-scipy, mrpt-apps; hours.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
@@ -99,5 +99,6 @@ measure map-without-truth result.json map-without-truth.json map-without-truth.s
   --kilometre "$kilometre" --tracks "$data/tracks"
 measure realism result.json realism.json realism.sh @
 measure range-image-presets table.txt range-image-presets.txt range-image-presets.sh @ 911 3 200
+measure speed result.json speed.json speed.sh "$data" @
 measure extraction table.txt extraction.txt extraction.sh "$data" @
 [ -z "${failed-}" ] || die "failed, see OUT/NAME.log:$failed"

@@ -3,7 +3,8 @@
 # Usage: share/experiments/start-and-files.sh DATA OUT [BIN...]
 #   DATA  folder of the real scans     OUT  folder for results
 #   BIN   folders of programs to compare, POLEMCL_BIN or build/bin unless given
-# Needs python3 and c++. Prints the median of 9 starts and of 5 runs over the 80 scans of drive 0005.
+# Needs python3 and c++. Prints the median of 9 starts and of 5 runs over the 80 scans of drive 0005; OUT/result.json
+# has those of the first BIN.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -27,7 +28,7 @@ c++ -O1 "$out/empty.cpp" -o "$out/empty" -Wl,--no-as-needed -lmrpt-slam -lmrpt-m
   -lmrpt-opengl -lmrpt-config
 
 python3 - "$top/config/kitti.ini" "$out" "$@" <<'END'
-import os, resource, statistics, subprocess, sys
+import json, resource, statistics, subprocess, sys
 
 config, out, folders = sys.argv[1], sys.argv[2], sys.argv[3:]
 
@@ -49,7 +50,8 @@ for folder in folders:
     starts += [[f"{folder}/pole-localize", "--version"], [f"{folder}/pole-localize", "--help"],
                [f"{folder}/pole-map", "build", "--help"], [f"{folder}/pole-map", "no-such-command"]]
 print("CPU ms, median of 9")
-for command, time in zip(starts, interleaved(starts, 9)):
+start_times = interleaved(starts, 9)
+for command, time in zip(starts, start_times):
     print(f"{time:8.1f}  {' '.join(command)}")
 
 def extract(folder, every):
@@ -61,4 +63,8 @@ times = interleaved(runs, 5)
 print("file to file, CPU ms, median of 5: a scan beyond a run over two; that run")
 for k, folder in enumerate(folders):
     print(f"{(times[2 * k] - times[2 * k + 1]) / 78:8.2f} {times[2 * k + 1]:8.1f}  {folder}")
+with open(out + "/result.json", "w") as file:
+    json.dump({"file_to_file_ms_a_scan": round((times[0] - times[1]) / 78, 2),
+               "empty_program_ms": round(start_times[0], 1), "start_ms": round(start_times[1], 1),
+               "help_ms": round(start_times[2], 1)}, file)
 END

@@ -66,7 +66,7 @@ score() {
 draws="7 8 9 10 11"
 for direction in odd even; do
   [ $direction = odd ] && first=0 || first=1
-  scans map $first
+  scans map "$first"
   for draw in $draws; do scans "drive-$draw" $((1 - first)) --odometry-noise 0.02 --seed "$draw"; done
   score ours "$top/config/kitti.ini" sensor.range_offset_m=0 sensor.range_scale=1
   score kitti.ini "$top/config/kitti.ini"

@@ -68,4 +68,26 @@ TEST(PointOrder, RingsShortPiecesAndMixedPointsTellNothing) {
   EXPECT_FALSE(orderOf({}));
 }
 
+TEST(PointOrder, AWholeTurnLacksLessThanASixth) {
+  const auto tells = [](double span) {
+    std::vector<float> x, y, z;
+    for (const double azimuth : turn(100, -0.5, span)) {
+      x.push_back(static_cast<float>(10 * std::cos(azimuth * M_PI / 180)));
+      y.push_back(static_cast<float>(10 * std::sin(azimuth * M_PI / 180)));
+      z.push_back(0);
+    }
+    return wholeTurn({x.data(), y.data(), z.data(), x.size()}).has_value();
+  };
+  EXPECT_TRUE(tells(305));
+  EXPECT_FALSE(tells(295));
+}
+
+TEST(PointOrder, TurnsBeginWithinAnArcUnlessTheyTurnDifferentWays) {
+  EXPECT_EQ(beginArc({}), 0);
+  const PointOrder left{Turn::counterclockwise, 3.0, 6}, beyond{Turn::counterclockwise, -3.0, 6},
+      right{Turn::clockwise, 1, 6};
+  EXPECT_NEAR(beginArc({left, beyond}), 2 * M_PI - 6, 1e-12) << "across the back";
+  EXPECT_EQ(beginArc({left, right}), 0);
+}
+
 }  // namespace polemcl::test_point_order

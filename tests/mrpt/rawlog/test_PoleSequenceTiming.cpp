@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationComment.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "support/ExpectHas.h"
 #include "support/SequenceFiles.h"
@@ -50,6 +53,46 @@ TEST(PoleSequenceTiming, TheCommentTellsTheTimesOfPoles) {
     EXPECT_NEAR(pole.timeOffset, -0.2 * std::atan2(pole.y, pole.x) / (2 * M_PI), 1e-9);
   comment.text = "[scan_timing]\nturn = upwards\n";
   EXPECT_HAS(bench.refusal(samples::bytesOf(comment) + scan), "[scan_timing] turn = upwards");
+}
+
+/// Points of a raw scan of the test place, ordered by azimuth from this one on, clockwise.
+CObservationPointCloud rawCloud(double time, double begin) {
+  CObservationPointCloud scan = cloud(time, 0);
+  auto& points = *scan.pointcloud;
+  std::vector<std::pair<double, mrpt::math::TPoint3Df>> turn;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    mrpt::math::TPoint3Df p;
+    points.getPoint(i, p.x, p.y, p.z);
+    const double turned = (begin - std::atan2(p.y, p.x)) / (2 * M_PI);
+    turn.emplace_back(turned - std::floor(turned), p);
+  }
+  std::sort(turn.begin(), turn.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < turn.size(); ++i)
+    points.setPointFast(i, turn[i].second.x, turn[i].second.y, turn[i].second.z);
+  scan.sensorLabel = "roof";
+  return scan;
+}
+
+TEST(PoleSequenceTiming, RawScansThatBeginAnywhereAreNoticed) {
+  const Bench bench;
+  const auto found = [&](double step, const SequenceOptions& o, std::size_t scans = 5) {
+    std::string log;
+    for (std::size_t i = 0; i < scans; ++i) {
+      const auto scan = static_cast<double>(i);
+      log += action({1, 0, 0}) + frame(rawCloud(10 + scan, 0.3 + step * scan));
+    }
+    return bench.read(log, o).counts.untoldTurns;
+  };
+  const auto turns = found(0.1, options());
+  ASSERT_EQ(turns.count("roof"), 1u);
+  EXPECT_EQ(turns.at("roof").turn, Turn::clockwise);
+  EXPECT_NEAR(turns.at("roof").arc, 0.3, 0.02) << "from the second scan to the fifth";
+  EXPECT_TRUE(found(0, options()).empty()) << "a fixed cut";
+  EXPECT_TRUE(found(0.3, options(), 3).empty()) << "two scans";
+  SequenceOptions told = options();
+  told.extraction.sensor.timing.turn = Turn::compensated;
+  EXPECT_TRUE(found(0.1, told).empty());
 }
 
 }  // namespace polemcl::test_pole_sequence_timing

@@ -1,5 +1,6 @@
 #include "core/sensor/PointOrder.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace polemcl {
@@ -35,6 +36,23 @@ std::optional<PointOrder> pointOrder(const PointsView& points) {
     return std::nullopt;
   order.turn = turned > 0 ? Turn::counterclockwise : Turn::clockwise;
   return order;
+}
+
+std::optional<PointOrder> wholeTurn(const PointsView& points) {
+  constexpr double kNearlyAll = 300 * M_PI / 180;
+  const auto order = pointOrder(points);
+  return order && order->arc >= kNearlyAll ? order : std::nullopt;
+}
+
+double beginArc(const std::vector<PointOrder>& orders) {
+  double least = 0, most = 0;
+  for (const PointOrder& order : orders) {
+    if (order.turn != orders.front().turn) return 0;
+    const double away = std::remainder(order.begin - orders.front().begin, 2 * M_PI);
+    least = std::min(least, away);
+    most = std::max(most, away);
+  }
+  return most - least;
 }
 
 }  // namespace polemcl

@@ -3,6 +3,7 @@
 /// \brief How a LiDAR turned, as the order of the points of a scan tells it.
 
 #include <optional>
+#include <vector>
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/sensor/SensorOptions.h>
@@ -20,5 +21,14 @@ struct PointOrder {
 /// returns are missing: rings one after the other make as many turns as there are, mixed points
 /// none.
 std::optional<PointOrder> pointOrder(const PointsView& points);
+/// \brief The same; none as well where a sixth of the turn or more has no points.
+std::optional<PointOrder> wholeTurn(const PointsView& points);
+
+/// \brief The arc in which turns begin, rad; 0 if they turn different ways, or there are none.
+double beginArc(const std::vector<PointOrder>& orders);
+
+/// \brief Turns of one LiDAR that begin farther apart were not cut at one azimuth, rad: lasers of
+/// one firing differ less.
+constexpr double kMovingBegin = 10 * 3.14159265358979323846 / 180;
 
 }  // namespace polemcl

@@ -26,6 +26,10 @@ const std::vector<std::pair<Turn, std::string>>& turnNames() {
   return names;
 }
 
+const std::string& name(Turn turn) {
+  return turnNames().at(static_cast<std::size_t>(turn)).second;
+}
+
 void bindTiming(Binder& b, ScanTiming& timing) {
   b.choice("turn", timing.turn, turnNames(),
            "how the LiDAR turns while it measures a scan, seen from above; compensated: the scans "

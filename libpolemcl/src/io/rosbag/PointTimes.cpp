@@ -238,10 +238,8 @@ std::string TimingEstimate::note() const {
   const std::string reason = m_impl->problem();
   if (!reason.empty()) return "when points were measured is not known: " + reason;
   const ScanTiming found = timing();
-  std::string name;
-  for (const auto& [value, text] : turnNames())
-    if (value == found.turn) name = text;
-  return "times of the points: turns of " + significant(found.seconds, 4) + " s, " + name +
+  return "times of the points: turns of " + significant(found.seconds, 4) + " s, " +
+         name(found.turn) +
          (found.movingCut ? ", each from its first point on"
                           : ", cut at " + significant(found.cut / degree, 4) + " deg") +
          ", stamped at " + significant(found.stamp, 3) + " of the turn";

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <map>
 
 #include "mrpt/observation/ScanFusion.h"
 #include "mrpt/rawlog/EntryStream.h"
@@ -29,6 +30,8 @@ struct Task {
   ScanTiming timing;  ///< as the rawlog states it
   ReadScan result;
   std::vector<FusionAgreement> agreements;  ///< of the parts, if LiDARs are fused
+  /// Of the scans that UntoldTurnSearch wants, by sensor label.
+  std::map<std::string, std::optional<PointOrder>> orders;
   std::exception_ptr error;
 };
 using TaskPtr = std::shared_ptr<Task>;
@@ -42,7 +45,11 @@ class Stream {
         m_velocity(options.velocity),
         m_extractions([options] { return extractorsFor(options); }) {
     m_extractions.local();  // reports invalid options here, for any rawlog
-    for (const LidarOptions& lidar : options.vehicle.lidars) m_lidars.push_back({lidar.label});
+    for (const LidarOptions& lidar : options.vehicle.lidars) {
+      m_lidars.push_back({lidar.label});
+      m_sensors.push_back(lidar.sensor);
+    }
+    if (m_sensors.empty()) m_sensors.push_back(options.extraction.sensor);
   }
 
   TaskPtr read();
@@ -54,7 +61,7 @@ class Stream {
  private:
   using Extractors = std::vector<ObservationPoleExtractor>;
   static Extractors extractorsFor(const SequenceOptions& options);
-  CObservationPoles::Ptr polesOf(const LidarScan& part, const ScanTiming& timing, ReadScan& result);
+  CObservationPoles::Ptr polesOf(const LidarScan& part, Task& task);
   void fuse(Task& task, const std::vector<CObservationPoles::Ptr>& parts) const;
   void count(const ReadScan& scan);
   void countLidars(const Task& task);
@@ -64,6 +71,8 @@ class Stream {
   ScanSource& m_source;
   std::function<Velocity(double)> m_velocity;
   tbb::enumerable_thread_specific<Extractors> m_extractions;  ///< one for each LiDAR
+  std::vector<SensorOptions> m_sensors;                       ///< of each LiDAR
+  std::map<std::string, UntoldTurnSearch> m_turns;            ///< by sensor label
   std::vector<LidarCounts> m_lidars;  ///< sums of squares in `apart`, `apartSigmas`
   SequenceCounts m_counts;
   bool m_ended = false;
@@ -108,16 +117,18 @@ Stream::Extractors Stream::extractorsFor(const SequenceOptions& options) {
 }
 
 /// The poles of one LiDAR's scan; adds to the report what the extraction did.
-CObservationPoles::Ptr Stream::polesOf(const LidarScan& part, const ScanTiming& timing,
-                                       ReadScan& result) {
+CObservationPoles::Ptr Stream::polesOf(const LidarScan& part, Task& task) {
   if (auto stored = std::dynamic_pointer_cast<CObservationPoles>(part.observation)) return stored;
   ObservationPoleExtractor& extraction = m_extractions.local()[part.lidar];
   // By number, so that the result does not depend on the threads.
-  extraction.setRecordedTiming(timing);
+  extraction.setRecordedTiming(task.timing);
   extraction.checkNext(part.ordinal < 3);
   auto poles = extraction.process(*part.observation);
-  result.sources.push_back(part.observation);
-  result.report += extraction.report();
+  task.result.sources.push_back(part.observation);
+  task.result.report += extraction.report();
+  if (UntoldTurnSearch::wants(part.ordinal))
+    task.orders[part.observation->sensorLabel] =
+        untoldOrder(*part.observation, m_sensors.at(part.lidar), task.timing);
   return poles;
 }
 
@@ -142,7 +153,7 @@ void Stream::extract(Task& task) {
   try {
     for (const LidarScan& part : task.scan.parts) {
       if (task.scan.isFused) label = "LiDAR " + m_lidars[part.lidar].label + ": ";
-      parts.push_back(polesOf(part, task.timing, result));
+      parts.push_back(polesOf(part, task));
     }
     if (task.scan.isFused)
       fuse(task, parts);
@@ -167,6 +178,7 @@ void Stream::collect(Task& task, const std::function<void(const ReadScan&)>& con
     consume(task.result);
     count(task.result);
     if (task.scan.isFused) countLidars(task);
+    for (const auto& [label, order] : task.orders) m_turns[label].add(order);
   } catch (...) {
     m_failure = std::current_exception();
     m_failed = true;
@@ -216,6 +228,8 @@ SequenceCounts Stream::finish() const {
     lidar.apart = std::sqrt(lidar.apart / poles);
     lidar.apartSigmas = std::sqrt(lidar.apartSigmas / (2 * poles));
   }
+  for (const auto& [label, turns] : m_turns)
+    if (const auto found = turns.found()) counts.untoldTurns.emplace(label, *found);
   counts.otherSensors = m_source.otherSensors();
   counts.otherLabels = m_source.otherLabels();
   counts.otherOdometry = m_source.otherOdometry();

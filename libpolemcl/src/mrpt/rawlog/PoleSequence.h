@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,6 +18,7 @@
 #include "core/common/Deskew.h"
 #include "io/data/PlanarMotion.h"
 #include "mrpt/rawlog/MotionOptions.h"
+#include "mrpt/rawlog/UntoldTurn.h"
 #include "mrpt/rawlog/VehicleOptions.h"
 
 namespace polemcl {
@@ -64,6 +66,7 @@ struct SequenceCounts {
   std::set<std::string> otherLabels = {};    ///< class and sensor label of those
   std::set<std::string> otherOdometry = {};  ///< labels of odometry that is not used
   std::vector<LidarCounts> lidars = {};      ///< as in VehicleOptions; empty if none was fused
+  std::map<std::string, UntoldTurn> untoldTurns = {};  ///< by sensor label
   std::size_t unknownMotions = 0;  ///< scans without odometry: after the first one; of sensors,
                                    ///< these are left out
   std::size_t dropped = 0;         ///< scans of sensors that nobody had time for

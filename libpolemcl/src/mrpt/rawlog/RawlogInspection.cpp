@@ -49,11 +49,10 @@ void requireBeams(const mrpt::obs::CObservation& scan) {
 }
 
 std::vector<PointOrder> ordersOf(const std::vector<PointsView>& scans) {
-  constexpr double kNearlyAll = 300 * degree;
   std::vector<PointOrder> orders;
   for (const PointsView& scan : scans) {
-    const auto order = pointOrder(scan);
-    if (!order || order->arc < kNearlyAll) return {};
+    const auto order = wholeTurn(scan);
+    if (!order) return {};
     orders.push_back(*order);
   }
   return orders;

@@ -48,6 +48,8 @@ struct POLEMCL_EXPORT ScanTiming {
 
 /// \brief The words of INI files.
 POLEMCL_EXPORT const std::vector<std::pair<Turn, std::string>>& turnNames();
+/// \brief Its word there.
+POLEMCL_EXPORT const std::string& name(Turn turn);
 
 /// \brief `turn`, `turn_s`, `cut_deg`, `moving_cut`, `stamp_turn`, `clock_offset_s` in the open
 /// section.
