@@ -24,6 +24,6 @@ done
 jq -s --arg processor "$(sed -n 's/^model name\s*: //p' /proc/cpuinfo | head -1)" \
   '{processor: $processor, mhz: .[0].context.mhz_per_cpu, start_and_files: .[3],
     benchmarks: (.[:3] | map(.benchmarks[] | select(.aggregate_name == "median")
-      | {name: .run_name, cpu: .cpu_time, unit: .time_unit} + with_entries(select(.key | IN("points", "poles", "map_poles")))))}' \
+      | {name: .run_name, cpu: .cpu_time, unit: .time_unit} + with_entries(select(.key | IN("points", "poles", "mapPoles")))))}' \
   "$out/extraction.json" "$out/step.json" "$out/global.json" "$out/result.json" >"$out/speed.json"
 mv "$out/speed.json" "$out/result.json"
