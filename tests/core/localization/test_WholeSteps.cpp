@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/localization/WholeSteps.h"
 
@@ -43,6 +44,27 @@ TEST(WholeSteps, AStepOfSecondsTellsThatTheVehicleIsSlower) {
   WholeSteps steps;
   for (int i = 0; i < 3; ++i) steps.add({4, 0, 0}, 0.5);
   EXPECT_NEAR(speedOf(steps.add({3, 0, 0}, 4)), 0.75, 1e-9);
+}
+
+/// Scans are kept each metre, so they come seldom while the vehicle hardly moves, and often again.
+TEST(WholeSteps, AfterAHaltWithFewScansTheSpeedIsSoonTold) {
+  for (const std::vector<double>& halts : {std::vector<double>{0.7, 0.9, 0.9},
+                                           {2.0, 5.0, 3.0, 9.0},
+                                           {0.3, 0.45, 0.65, 0.9, 0.9, 0.9}}) {
+    WholeSteps steps;
+    for (int i = 0; i < 5; ++i) steps.add({0.8, 0, 0}, 0.2);
+    for (const double seconds : halts) steps.add({0.05, 0, 0}, seconds);
+    double untold = 0, speed = 0;
+    for (int i = 0; i < 10; ++i) {
+      speed += 0.2 * 2;  // m/s²
+      untold += 0.2;
+      const auto step = steps.add({0.2 * speed, 0, 0}, 0.2);
+      EXPECT_LE(untold, 0.41) << i;
+      if (!step) continue;
+      EXPECT_NEAR(speedOf(step), speed, 0.41);
+      untold = 0;
+    }
+  }
 }
 
 TEST(WholeSteps, TheFirstStepMayBeTooShort) {

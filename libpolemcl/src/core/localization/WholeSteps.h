@@ -19,7 +19,8 @@ struct TimedMotion {
 ///
 /// After a stall of a bus or a network, scans come in a burst and are stamped when they come. The
 /// first has a motion too short for its time, and the others motions that no vehicle makes in
-/// theirs. Such motions are joined with those after them, until one is as long as usual.
+/// theirs. Such motions are joined with those after them, until one is as long as usual, or they
+/// are so together.
 class POLEMCL_EXPORT WholeSteps {
  public:
   /// \brief Least length of a step, as a share of the usual one.
@@ -44,6 +45,7 @@ class POLEMCL_EXPORT WholeSteps {
 
   TimedMotion m_rest;             ///< motions that tell no speed yet
   int m_restCount = 0;            ///< of these motions
+  bool m_restIsShort = true;      ///< each of them is much shorter than usual
   double m_usual = 0.1;           ///< length of a motion, s; at first that of most LiDARs
   std::optional<double> m_speed;  ///< of the last step, m/s
 };
