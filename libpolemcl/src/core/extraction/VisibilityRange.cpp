@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/common/Transform.h"
+
 namespace polemcl {
 namespace {
 
@@ -37,6 +39,16 @@ double visibilityRangeTowards(const std::vector<float>& visibilityRange, double 
     least = std::min(least, visibilityRange[i]);
   }
   return least;
+}
+
+bool isInView(const std::vector<float>& visibilityRange, const Pose2D& pose_map_sensor,
+              const MapPole& pole) {
+  constexpr double kBeside = 0.15;    // m beside a pole: objects there may hide it
+  constexpr double kOwnFront = 0.75;  // m: it ends the range itself, in steps of 0.5 m; maps err
+  const Pose2D seen = relative(pose_map_sensor, {pole.x, pole.y, 0});
+  const double front = std::hypot(seen.x, seen.y) - pole.radius - kOwnFront;
+  return visibilityRangeTowards(visibilityRange, seen.x, seen.y, pole.radius + kBeside) >=
+         std::max(front, 1e-3);
 }
 
 VisibilityRangeFinder::VisibilityRangeFinder(const SensorModel& sensor, double sensorHeight,

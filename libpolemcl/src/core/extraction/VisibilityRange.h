@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include <polemcl/core/common/Types.h>
 #include "core/extraction/scan_line/GroundGrid.h"
 #include "core/extraction/scan_line/ScanLines.h"
 #include "core/sensor/SensorModel.h"
@@ -24,6 +25,12 @@ std::size_t visibilityRangeSector(double azimuth, std::size_t sectors);
 /// \return m; 0 where one of the sectors, or all, are unknown.
 double visibilityRangeTowards(const std::vector<float>& visibilityRange, double x, double y,
                               double halfWidth);
+
+/// \brief Whether a scan could have found a pole: nothing stands before it.
+/// \param visibilityRange As VisibilityRangeFinder gives it; empty: nothing is in view.
+/// \param pose_map_sensor Of the frame of visibilityRange.
+bool isInView(const std::vector<float>& visibilityRange, const Pose2D& pose_map_sensor,
+              const MapPole& pole);
 
 /// \brief Judges the visibility range from the beams at pole heights (0.5 to 3 m above the
 /// ground).

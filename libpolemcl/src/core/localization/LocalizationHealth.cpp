@@ -27,6 +27,9 @@ constexpr double kUsualWithin = 200;
 /// Lost: a smaller share of the observed poles is on the map. A pose that has gone wrong was known
 /// well before, so matches by chance are rare: 0.002 for 20 cm round each pole.
 constexpr double kLostShare = 0.03;
+/// The vehicle has left the map: the map has fewer poles near it than this share of those that are
+/// seen, and at least this share of these few is found. Unmatched poles then say nothing.
+constexpr double kUnmapped = 0.5, kFound = 0.5;
 constexpr double kDegradedShare = 0.4;  // degraded: a smaller share of them is on the map
 /// Degraded: the log-likelihood ratio of a wrong place against the right one is above kDoubt. At a
 /// right and at a wrong place, these shares of the poles match. A few poles suffice if none
@@ -54,6 +57,7 @@ constexpr double kBlindSeconds = 2;  // degraded: no pole for a longer time, s
 constexpr double kBlindMetres = 20;  // degraded: no pole over a longer distance, m
 constexpr double kConfirm = 5;       // distance with good matches until a new pose is ok, m
 constexpr double kConfirmFound = 2;  // the same for a pose that a search found, m
+constexpr int kConfirmScans = 3;     // and from so many viewpoints with good matches
 constexpr double kConfirmNear = 8;   // the same, near a pose that was believed, m
 constexpr double kNearlyAll = 0.85;  // but not where a greater share of the poles matches
 /// Share of matched poles that confirms a new pose. Particles drawn over metres find matches by
@@ -147,10 +151,13 @@ void HealthMonitor::remember(const HealthInput& input, double metres) {
     scan.squared += match.squared;
     ++scan.matches;
   }
-  doubt(scan, metres);
+  if (!m_leftMap) doubt(scan, metres);
   doubtByRivals(input);
   Viewpoint& viewpoint = m_viewpoints.back();
   const double share = 1.0 / ++viewpoint.scans;
+  viewpoint.near.seen += share * (input.near.seen - viewpoint.near.seen);
+  viewpoint.near.matched += share * (input.near.matched - viewpoint.near.matched);
+  viewpoint.near.expected += share * (input.near.expected - viewpoint.near.expected);
   viewpoint.seen += share * (scan.seen - viewpoint.seen);
   viewpoint.matched += share * (scan.matched - viewpoint.matched);
   viewpoint.squared += share * (scan.squared - viewpoint.squared);
@@ -199,6 +206,9 @@ HealthMonitor::Window HealthMonitor::sumOver(double metres) const {
     sum.matched += viewpoint.matched;
     sum.squared += viewpoint.squared;
     sum.matches += viewpoint.matches;
+    sum.near.seen += viewpoint.near.seen;
+    sum.near.matched += viewpoint.near.matched;
+    sum.near.expected += viewpoint.near.expected;
     ++sum.viewpoints;
   }
   return sum;
@@ -211,12 +221,20 @@ double HealthMonitor::shareOfUsual(const Window& window) const {
   return mean > 0 ? 1 : 0;
 }
 
+/// Only a pose that was confirmed tells which poles of the map to expect.
+bool HealthMonitor::leftMap(const Window& window) const {
+  return m_confirmed && m_health.state != HealthState::lost &&
+         window.near.expected < kUnmapped * window.near.seen &&
+         window.near.matched >= kFound * window.near.expected;
+}
+
 void HealthMonitor::sumUp() {
   const Window window = sumOver(kWindow), all = sumOver(kLostWindow);
   m_health.seenShare = shareOfUsual(window);
   m_health.matchedShare = window.matchedShare();
   m_health.innovation = window.matches > 0 ? window.squared / (2 * window.matches) : 0;
   m_longShare = all.matchedShare();
+  m_leftMap = leftMap(all);
   m_isEnough = window.seen >= kMinSightings;
   m_isEnoughLong = all.seen >= kMinSightings && shareOfUsual(all) >= kLostSeen;
 }
@@ -230,11 +248,15 @@ double HealthMonitor::metresToConfirm() const {
 /// Confirms a new pose after enough metres of good matches.
 void HealthMonitor::confirm(const HealthInput& input) {
   const Viewpoint& here = m_viewpoints.back();
-  if (here.seen > 0 && here.matched >= kDegradedShare * here.seen) m_goodDriven += input.metres;
+  if (here.seen > 0 && here.matched >= kDegradedShare * here.seen) {
+    m_goodDriven += input.metres;
+    m_goodScans += here.scans == 1;
+  }
   const bool good = m_isEnough && m_health.matchedShare >= kDegradedShare &&
                     m_longShare >= kConfirmShare && m_health.spread < kDegradedSpread &&
                     m_health.spreadHeading < kDegradedHeading;
   if (m_confirmed || !good || m_goodDriven < metresToConfirm()) return;
+  if (m_source != PoseSource::given && m_goodScans < kConfirmScans) return;
   m_confirmed = true;
   m_rivalDoubt = 0;  // it was of a pose that was not known yet
 }
@@ -244,8 +266,8 @@ void HealthMonitor::judge(const HealthInput& input) {
   // A lost filter spreads until it meets chance matches; they are no reason to believe it again.
   const bool believed = m_confirmed && m_health.state != HealthState::lost;
   const double lostShare = believed ? kLostShare : kHopelessShare;
-  const bool bare =
-      m_isEnoughLong && m_driven >= kHopelessAfter && m_longShare < lostShare && fewMatched;
+  const bool bare = !m_leftMap && m_isEnoughLong && m_driven >= kHopelessAfter &&
+                    m_longShare < lostShare && fewMatched;
   const bool unconfirmed =
       m_isEnough && !m_confirmed && m_driven >= kConfirmWithin && m_longShare < kConfirmShare;
   const bool wide = m_health.spread > kDegradedSpread || m_health.spreadHeading > kDegradedHeading;
@@ -263,10 +285,11 @@ void HealthMonitor::judge(const HealthInput& input) {
       {m_health.spread > kLostSpread && !severalModes, State::lost, Reason::spread},
       {severalModes, State::degraded, Reason::ambiguous},
       {!m_confirmed, State::degraded, Reason::converging},
-      {(m_isEnough && fewMatched) || m_doubt > kDoubt, State::degraded, Reason::mismatch},
+      {((m_isEnough && fewMatched) || m_doubt > kDoubt) && !m_leftMap, State::degraded,
+       Reason::mismatch},
       {wide, State::degraded, Reason::spread},
       {m_goodDriven < m_gapUntil, State::degraded, Reason::timeGap},
-      {blind, State::degraded, Reason::noPoles},
+      {blind || (m_leftMap && fewMatched), State::degraded, Reason::noPoles},
       {input.odometryContradicted, State::degraded, Reason::odometry},
       {(m_isEnough && m_health.innovation > kInnovation) || m_rivalDoubt > kRivalDoubt,
        State::degraded, Reason::innovation},

@@ -25,6 +25,7 @@ struct HealthInput {
   double modeShare = 1;           ///< of the weight of particles round the estimate, in [0, 1]
   bool odometryContradicted = false;
   RivalPose rival;  ///< of findRival()
+  NearPoles near;   ///< of nearPoles(); all 0: whether the vehicle left the map is not asked
 };
 
 /// \brief Where an assumed pose comes from.
@@ -61,11 +62,13 @@ class POLEMCL_EXPORT HealthMonitor {
   /// Means of the scans from one viewpoint.
   struct Viewpoint {
     double driven = 0, seen = 0, matched = 0, squared = 0, matches = 0;
+    NearPoles near;
     int scans = 0;
   };
   /// Sums over the viewpoints of a window.
   struct Window {
     double seen = 0, matched = 0, squared = 0, matches = 0;
+    NearPoles near;
     int viewpoints = 0;
     double matchedShare() const { return seen > 0 ? matched / seen : 0; }
   };
@@ -78,6 +81,7 @@ class POLEMCL_EXPORT HealthMonitor {
   void sumUp();
   double metresToConfirm() const;
   void confirm(const HealthInput& input);
+  bool leftMap(const Window& window) const;
   void judge(const HealthInput& input);
 
   double m_maxGap;
@@ -90,6 +94,7 @@ class POLEMCL_EXPORT HealthMonitor {
   double m_usualOver = 0;  ///< distance that this mean is over, m
   bool m_isEnough = false, m_isEnoughLong = false;  ///< to judge the window; to be lost
   double m_longShare = 0;                           ///< of matched poles over the longer window
+  bool m_leftMap = false;                           ///< see leftMap()
   double m_seenDriven = 0, m_seenTime = 0;          ///< when a pole was last seen
   double m_rivalDoubt = 0;  ///< by poles that fit another pose, see doubtByRivals()
   Pose2D m_lastRival;       ///< that pose, from the estimate
@@ -97,6 +102,7 @@ class POLEMCL_EXPORT HealthMonitor {
   std::map<std::size_t, double> m_rivalPoles;
   double m_doubt = 0;       ///< log-likelihood ratio of a wrong place, see doubt()
   double m_goodDriven = 0;  ///< metres with enough matches since begin()
+  int m_goodScans = 0;      ///< scans with enough matches since begin(), from different viewpoints
   double m_gapUntil = 0;    ///< as many of them end a time gap
 };
 

@@ -1,12 +1,14 @@
 #include "core/localization/MapAssociation.h"
 
 #include <Eigen/LU>
+#include <cmath>
 #include <utility>
 
 #include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/PoleIndex.h"
 #include "core/common/Transform.h"
+#include "core/extraction/VisibilityRange.h"
 
 namespace polemcl {
 namespace {
@@ -47,6 +49,23 @@ std::vector<PoleMatch> associate(const std::vector<PoleDetection>& poles_robot,
     matches[pair.first].squared = pair.distance;
   }
   return matches;
+}
+
+NearPoles nearPoles(const PoleScan& scan, const std::vector<PoleMatch>& matches,
+                    const Pose2D& robot, const PoleIndex& index,
+                    const std::vector<MapPole>& poles) {
+  constexpr double kNear = 20;  // m
+  NearPoles near;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (!(std::hypot(scan.poles_robot[i].x, scan.poles_robot[i].y) < kNear)) continue;
+    near.seen += matches[i].confidence;
+    near.matched += matches[i].matched ? matches[i].confidence : 0;
+  }
+  const Pose2D sensor = compose(robot, scan.pose_robot_sensor);
+  for (const auto& pole : index.within(robot.x, robot.y, kNear))
+    near.expected +=
+        scan.visibilityRange.empty() || isInView(scan.visibilityRange, sensor, poles[pole.index]);
+  return near;
 }
 
 }  // namespace polemcl

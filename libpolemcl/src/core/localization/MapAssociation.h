@@ -37,4 +37,19 @@ POLEMCL_EXPORT std::vector<PoleMatch> associate(const std::vector<PoleDetection>
                                                 const PoleIndex& index,
                                                 const AssociationOptions& options);
 
+/// \brief Poles near the robot, of a scan and of the map.
+struct NearPoles {
+  double seen = 0;      ///< sum of the confidences of observed poles
+  double matched = 0;   ///< of those on the map
+  double expected = 0;  ///< number of map poles that the scan could see, if the robot is there
+};
+
+/// \brief Within 20 m, where each LiDAR sees most poles. Without visibility ranges, each map pole
+/// there is expected.
+/// \param matches Of the poles of the scan. \param robot Map frame.
+/// \param poles Of the map, those of `index`.
+POLEMCL_EXPORT NearPoles nearPoles(const PoleScan& scan, const std::vector<PoleMatch>& matches,
+                                   const Pose2D& robot, const PoleIndex& index,
+                                   const std::vector<MapPole>& poles);
+
 }  // namespace polemcl

@@ -15,25 +15,12 @@ namespace polemcl {
 namespace {
 
 constexpr std::uint32_t kNoHit = PointHit::none;
-/// m beside a pole: objects there may hide it.
-constexpr double kBeside = 0.15;
-/// m: a pole's own front ends the visibility range, a step of it is 0.5 m, and maps err.
-constexpr double kOwnFront = 0.75;
 
 void checkVisibilityRange(const SessionScan& scan, const std::string& where) {
   for (const float range : scan.visibilityRange)
     if (!(std::isfinite(range) && range >= 0))
       throw Error("a visibility range of " + where +
                   " is negative or not finite; extract the scan again");
-}
-
-/// Whether a scan could have found the pole: nothing stands before it.
-bool inView(const SessionScan& scan, const MapPole& pole) {
-  const Pose2D sensor = compose(scan.pose_map_robot, scan.pose_robot_sensor);
-  const Pose2D seen = relative(sensor, {pole.x, pole.y, 0});
-  const double front = std::hypot(seen.x, seen.y) - pole.radius - kOwnFront;
-  return visibilityRangeTowards(scan.visibilityRange, seen.x, seen.y, pole.radius + kBeside) >=
-         std::max(front, 1e-3);
 }
 
 }  // namespace
@@ -116,7 +103,7 @@ void Session::expect(std::size_t number, const KdTree2D& tree,
     own.wasNear |= unknown && hit.squaredDistance <= kNearby * kNearby;
     if (unknown && !found) continue;
     own.likelihood.add(found, m_along[number], detectionChance(poles[hit.index].history),
-                       !unknown && !inView(scan, poles[hit.index].pole));
+                       !unknown && !isInView(scan.visibilityRange, sensor, poles[hit.index].pole));
   }
 }
 

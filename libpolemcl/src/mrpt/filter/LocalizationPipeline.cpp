@@ -324,9 +324,11 @@ void LocalizationPipeline::track(const PoleScan& frame, double metres, Localizat
                                 [](const PoleMatch& match) { return match.matched; });
   m_unseen = seen ? 0 : m_unseen + metres;
   input.matches = m_matches;
-  if (!m_map.coarse)
-    input.rival =
-        findRival(frame.poles_robot, m_matches, estimate.mean, m_map.poles->index(), association());
+  if (!m_map.coarse) {
+    const PoleIndex& index = m_map.poles->index();
+    input.rival = findRival(frame.poles_robot, m_matches, estimate.mean, index, association());
+    input.near = nearPoles(frame, m_matches, estimate.mean, index, m_map.poles->poles());
+  }
   input.estimate = estimate;
   input.effectiveParticles =
       m_filter.report().effectiveShare * static_cast<double>(m_filter.report().particles);
