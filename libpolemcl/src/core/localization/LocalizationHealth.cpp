@@ -221,9 +221,10 @@ double HealthMonitor::shareOfUsual(const Window& window) const {
   return mean > 0 ? 1 : 0;
 }
 
-/// Only a pose that was confirmed tells which poles of the map to expect.
+/// Only a pose that was confirmed tells which poles of the map to expect. It may get lost on the
+/// way (spread), but a lost one tells nothing.
 bool HealthMonitor::leftMap(const Window& window) const {
-  return m_confirmed && m_health.state != HealthState::lost &&
+  return m_confirmed && (m_leftMap || m_health.state != HealthState::lost) &&
          window.near.expected < kUnmapped * window.near.seen &&
          window.near.matched >= kFound * window.near.expected;
 }

@@ -57,6 +57,8 @@ class POLEMCL_EXPORT HealthMonitor {
   /// \brief Whether the poles of the last scans speak for a wrong place as strongly as they can,
   /// also while the vehicle stands and the pose is not confirmed yet.
   bool isInFullDoubt() const;
+  /// \brief Whether the map has hardly any pole where a confirmed pose says that the vehicle is.
+  bool hasLeftMap() const { return m_leftMap; }
 
  private:
   /// Means of the scans from one viewpoint.

@@ -363,11 +363,20 @@ bool LocalizationPipeline::searchIsDue() const {
          m_time - m_searchTime >= kSearchEverySeconds;
 }
 
+/// Round a vehicle that has left the map: it is where the odometry says, and poles that are not on
+/// the map fit a place elsewhere by chance.
+std::optional<SearchArea> LocalizationPipeline::searchArea() const {
+  constexpr double kSigmas = 4, kBeside = 10;  // m
+  if (!m_hasPose || !m_monitor.hasLeftMap()) return m_area;
+  const Eigen::Vector2d centre(m_estimate.mean.x, m_estimate.mean.y);
+  return SearchArea{centre, kSigmas * m_monitor.health().spread + kBeside};
+}
+
 void LocalizationPipeline::search(const PoleScan& frame, LocalizationUpdate& update) {
   m_searchedAt = m_submap.driven();
   m_searchTime = m_time;
   ++m_searches;
-  m_search = m_map.search->localize(m_submap, m_area);
+  m_search = m_map.search->localize(m_submap, searchArea());
   if (m_search.verdict == GlobalVerdict::none) return;
   const bool resolved = m_search.verdict == GlobalVerdict::resolved;
   const bool here = resolved && isNear(m_search.hypotheses[0], sameMetres, sameRadians);

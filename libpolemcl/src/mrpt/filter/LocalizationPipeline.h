@@ -151,6 +151,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
   void doubtSubmap();
   void requireNearMap(double x, double y, double radius) const;
   bool searchIsDue() const;
+  std::optional<SearchArea> searchArea() const;
   void search(const PoleScan& frame, LocalizationUpdate& update);
   bool isNear(const GlobalHypothesis& place, double metres, double radians) const;
   bool fitsBetter(const GlobalHypothesis& place, const PoleScan& frame) const;
