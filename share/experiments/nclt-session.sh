@@ -90,7 +90,10 @@ confidence=$(jq 'min_by(.first_half.mean_m).min_confidence' "$out/settings.json"
 drive=drive$frames
 
 localize "$frames" "$confidence" "$drive" authors 10 >"$out/started.json"
-localize "$frames" "$confidence" "$drive" authors 10 --global >"$out/global.json"
+for joined in 10 20 40 80; do
+  localize $joined "$confidence" drive$joined authors 10 --global >"$out/one.json"
+  jq --argjson frames $joined '{key_frames: $frames} + .' "$out/one.json"
+done | jq -s . >"$out/global.json"
 build_map "$frames" "$drive" own
 views path views_cloud --cloud "$out"/tiles/*.pcd
 "$bin/pole-import" folder --quiet --input "$out/views_cloud" --output "$out/cloud.rawlog" --turn compensated
@@ -112,4 +115,4 @@ jq -n --argjson frames "$frames" --argjson confidence "$confidence" \
     session_map_against_authors: $own[0], cloud_map_against_authors: $cloud[0], in_cloud_map: $in_cloud[0]}' \
   >"$out/result.json"
 rm -r "$out"/views* "$out/frames" "$out/path" "$out/tiles" "$out/part" "$out"/*.rawlog
-jq -c '.chosen, .in_authors_map, .in_authors_map_global, .in_cloud_map' "$out/result.json"
+jq -c '.chosen, .in_authors_map, .in_authors_map_global[], .in_cloud_map' "$out/result.json"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/common/PoleIndex.h"
 #include "core/localization/MapAssociation.h"
@@ -88,6 +89,30 @@ TEST(MapAssociation, WhatIsNotFiniteMatchesNothing) {
   EXPECT_FALSE(associate({detection(nan, 0, 0.1)}, {}, index, kExact)[0].matched);
   EXPECT_FALSE(associate({detection(0, 0, nan)}, {}, index, kExact)[0].matched);
   EXPECT_TRUE(associate({}, {}, index, kExact).empty());
+}
+
+TEST(MapAssociation, NearPolesAreThoseThatTheScanCouldSee) {
+  // The robot at (100, 0) faces +y; its sensor stands 2 m ahead, at (100, 2).
+  const std::vector<MapPole> poles{mapPole(100, 12, 0.1), mapPole(90, 2, 0.1),
+                                   mapPole(100, -15, 0.1), mapPole(100, 21, 0.1),
+                                   mapPole(125, 0, 0.1)};
+  const PoleIndex index(poles);
+  PoleScan scan;
+  scan.pose_robot_sensor = {2, 0, 0};
+  scan.poles_robot = {detection(12, 0, 0.1, 0.5), detection(0, 10, 0.1, 0.25),
+                      detection(25, 0, 0.1, 1)};
+  std::vector<PoleMatch> matches(3);
+  for (std::size_t i = 0; i < 3; ++i) matches[i].confidence = scan.poles_robot[i].confidence;
+  matches[0].matched = matches[2].matched = true;
+  const Pose2D robot{100, 0, M_PI / 2};
+  NearPoles near = nearPoles(scan, matches, robot, index, poles);
+  EXPECT_EQ(near.seen, 0.75) << "one is farther than 20 m";
+  EXPECT_EQ(near.matched, 0.5);
+  EXPECT_EQ(near.expected, 3) << "two are farther than 20 m";
+  scan.visibilityRange.assign(256, 50);
+  for (std::size_t i = 120; i < 136; ++i) scan.visibilityRange[i] = 8;  // a wall 8 m ahead
+  near = nearPoles(scan, matches, robot, index, poles);
+  EXPECT_EQ(near.expected, 2) << "one stands behind the wall";
 }
 
 }  // namespace polemcl::test_map_association
