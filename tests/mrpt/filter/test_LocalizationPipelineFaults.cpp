@@ -2,6 +2,7 @@
 // maps: test_LocalizationPipeline.cpp; results of many trials: share/experiments/faults.sh.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/common/Deskew.h"
@@ -162,6 +163,29 @@ TEST_F(PoleLocalizationFaults, NewPolesBesideThoseThatAreGoneAreNoRivals) {
   for (std::size_t i = 60; i < updates.size(); ++i) {
     EXPECT_NE(updates[i].health.reason, HealthReason::innovation) << i;
     EXPECT_LT(error(updates[i], i), 0.3) << i;
+  }
+}
+
+TEST_F(PoleLocalizationFaults, BeyondTheMapAPlaceThatLooksAlikeIsNoReasonToJump) {
+  drive(250);
+  auto cut = std::make_shared<CPoleMap>(*map->poles);
+  std::vector<MapPole> poles = cut->poles();
+  for (MapPole& pole : poles) {
+    const auto distance = [&](const Pose2D& pose) {
+      return std::hypot(pose.x - pole.x, pose.y - pole.y);
+    };
+    const auto nearest = std::min_element(
+        truth.begin(), truth.end(),
+        [&](const Pose2D& a, const Pose2D& b) { return distance(a) < distance(b); });
+    if (nearest - truth.begin() > 120) pole.x += 1000;  // another place with the same poles
+  }
+  cut->setPoles(poles);
+  map = std::make_unique<LocalizationMap>(cut);
+  const auto updates = run();
+  for (std::size_t i = 0; i < updates.size(); ++i) EXPECT_LT(error(updates[i], i), 5) << i;
+  for (std::size_t i = 200; i < updates.size(); ++i) {
+    EXPECT_EQ(updates[i].health.state, HealthState::degraded) << i;
+    EXPECT_NE(updates[i].health.reason, HealthReason::mismatch) << i;
   }
 }
 
