@@ -57,7 +57,7 @@ constexpr double kBlindSeconds = 2;  // degraded: no pole for a longer time, s
 constexpr double kBlindMetres = 20;  // degraded: no pole over a longer distance, m
 constexpr double kConfirm = 5;       // distance with good matches until a new pose is ok, m
 constexpr double kConfirmFound = 2;  // the same for a pose that a search found, m
-constexpr int kConfirmScans = 3;     // and from so many viewpoints with good matches
+constexpr int kConfirmScans = 3;     // viewpoints with good matches until it is ok
 constexpr double kConfirmNear = 8;   // the same, near a pose that was believed, m
 constexpr double kNearlyAll = 0.85;  // but not where a greater share of the poles matches
 /// Share of matched poles that confirms a new pose. Particles drawn over metres find matches by
