@@ -83,6 +83,7 @@ measure odometry-bias-cast result.json odometry-bias-cast.json odometry-bias.sh 
 measure inventory result.json inventory.json inventory.sh @ 961
 measure faults faults.json faults.json faults.sh @
 measure faults-kilometre faults.json faults-kilometre.json faults-kilometre.sh "$data" "$kilometre" @
+measure leaving-the-map result.json leaving-the-map.json leaving-the-map.sh @
 measure starts result.json starts.json starts.sh @
 measure year result.json year.json year.sh @ 500 2
 measure map-upkeep result.json map-upkeep.json map-upkeep.sh @ 811 4

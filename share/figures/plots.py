@@ -85,13 +85,17 @@ def health(source):
     parts = panel.grid("Share of the observed poles that stand on the map", [0, 0.25, 0.5, 0.75, 1])
     parts += legend([(color, name) for name, color in STATES.items()], 30)
     before = "none"
-    for index, (first, last, state, reason) in enumerate(spans(rows)):
+    ends = [0, 0]  # of the last word in each of two lines
+    for first, last, state, reason in spans(rows):
         left, right = panel.x(first), panel.x(last)
         for top, height, opacity in ((panel.top, panel.height, 0.16), (280, 16, 1)):
             parts.append(f'<rect x="{left:.1f}" y="{top}" width="{right - left:.1f}" '
                          f'height="{height}" fill="{STATES[state]}" fill-opacity="{opacity}"/>')
-        if reason not in ("none", before):  # at two heights, as neighbours may be short
-            parts.append(text(max((left + right) / 2, LEFT + 32), 315 + 18 * (index % 2), reason))
+        middle, half = max((left + right) / 2, LEFT + 32), 4.2 * len(reason)
+        free = [k for k in (0, 1) if ends[k] < middle - half]
+        if reason not in ("none", before) and free:  # there is no room for all that are short
+            parts.append(text(middle, 315 + 18 * free[0], reason))
+            ends[free[0]] = middle + half
         before = reason
     parts.append(line([(panel.x(row["time"]), panel.y(float(row["matched_share"])))
                        for row in rows], "#1f2328", 1.5))
