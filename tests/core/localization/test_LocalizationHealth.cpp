@@ -122,16 +122,6 @@ TEST(LocalizationHealth, WhatIsSeenIsComparedWithTheMeanOfALongWay) {
   EXPECT_NEAR(sparse.scans(20, 1, 1).seenShare, 0.2 / 0.7, 0.03);
 }
 
-TEST(LocalizationHealth, OneThatASearchFoundIsBorneOutByThreeScans) {
-  Feed feed;
-  feed.metres = 5;
-  feed.monitor.begin(PoseSource::found);
-  feed.scans(2, 0.9);
-  feed.expect(State::degraded, Reason::converging);
-  feed.scan(0.9);
-  feed.expect(State::ok, Reason::none);
-}
-
 /// The map ends: of ten poles near the vehicle it has fewer and fewer, and all of these are found.
 TEST(LocalizationHealth, BeyondTheMapPolesWithoutAMatchSayNothing) {
   Feed feed;

@@ -57,7 +57,6 @@ constexpr double kBlindSeconds = 2;  // degraded: no pole for a longer time, s
 constexpr double kBlindMetres = 20;  // degraded: no pole over a longer distance, m
 constexpr double kConfirm = 5;       // distance with good matches until a new pose is ok, m
 constexpr double kConfirmFound = 2;  // the same for a pose that a search found, m
-constexpr int kConfirmScans = 3;     // viewpoints with good matches until it is ok
 constexpr double kConfirmNear = 8;   // the same, near a pose that was believed, m
 constexpr double kNearlyAll = 0.85;  // but not where a greater share of the poles matches
 /// Share of matched poles that confirms a new pose. Particles drawn over metres find matches by
@@ -249,15 +248,11 @@ double HealthMonitor::metresToConfirm() const {
 /// Confirms a new pose after enough metres of good matches.
 void HealthMonitor::confirm(const HealthInput& input) {
   const Viewpoint& here = m_viewpoints.back();
-  if (here.seen > 0 && here.matched >= kDegradedShare * here.seen) {
-    m_goodDriven += input.metres;
-    m_goodScans += here.scans == 1;
-  }
+  if (here.seen > 0 && here.matched >= kDegradedShare * here.seen) m_goodDriven += input.metres;
   const bool good = m_isEnough && m_health.matchedShare >= kDegradedShare &&
                     m_longShare >= kConfirmShare && m_health.spread < kDegradedSpread &&
                     m_health.spreadHeading < kDegradedHeading;
   if (m_confirmed || !good || m_goodDriven < metresToConfirm()) return;
-  if (m_source != PoseSource::given && m_goodScans < kConfirmScans) return;
   m_confirmed = true;
   m_rivalDoubt = 0;  // it was of a pose that was not known yet
 }

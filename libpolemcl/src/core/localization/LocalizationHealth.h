@@ -104,7 +104,6 @@ class POLEMCL_EXPORT HealthMonitor {
   std::map<std::size_t, double> m_rivalPoles;
   double m_doubt = 0;       ///< log-likelihood ratio of a wrong place, see doubt()
   double m_goodDriven = 0;  ///< metres with enough matches since begin()
-  int m_goodScans = 0;      ///< scans with enough matches since begin(), from different viewpoints
   double m_gapUntil = 0;    ///< as many of them end a time gap
 };
 
