@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/common/Angles.h"
 #include "core/common/Transform.h"
 #include "io/file/TextFile.h"
 
@@ -47,8 +48,10 @@ std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped
   const TimingEstimate& found = dead.timing.known() ? dead : mapped;
   if (!found.timing.known()) return {};
   return "its scans do not look corrected for the motion during a turn" +
-         errors(found.turnSignificance) +
-         ": pole-extract --inspect tells [sensor] turn and cut_deg";
+         errors(found.turnSignificance) + ": of an upright LiDAR, [sensor] turn = " +
+         name(found.timing.turn) + " and cut_deg = " +
+         io::fixed(found.timing.cut / degree, 0) +
+         " fit best; pole-extract --inspect tells them, unless it finds no beams";
 }
 
 /// Clocks are searched only on a suspicion: it takes much longer.

@@ -57,7 +57,9 @@ TEST(TimingDoubt, SeesClocksThatDiffer) {
 TEST(TimingDoubt, SeesScansThatWereNotCorrected) {
   const TimingEstimate found = remainingTiming(session({Turn::clockwise, 0.1, M_PI, 0.5}), 0.1);
   EXPECT_EQ(found.timing.turn, Turn::clockwise);
-  EXPECT_HAS(timingDoubt(found, kNothing, {}), "not look corrected");
+  const std::string doubt = timingDoubt(found, kNothing, {});
+  EXPECT_HAS(doubt, "not look corrected");
+  EXPECT_HAS(doubt, "turn = clockwise and cut_deg = 180 ");
 }
 
 TEST(TimingDoubt, OfTruePosesToo) {
