@@ -48,9 +48,9 @@ std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped
   const TimingEstimate& found = dead.timing.known() ? dead : mapped;
   if (!found.timing.known()) return {};
   return "its scans do not look corrected for the motion during a turn" +
-         errors(found.turnSignificance) + ": of an upright LiDAR, [sensor] turn = " +
-         name(found.timing.turn) + " and cut_deg = " +
-         io::fixed(found.timing.cut / degree, 0) +
+         errors(found.turnSignificance) +
+         ": of an upright LiDAR, [sensor] turn = " + name(found.timing.turn) +
+         " and cut_deg = " + io::fixed(found.timing.cut / degree, 0) +
          " fit best; pole-extract --inspect tells them, unless it finds no beams";
 }
 

@@ -382,7 +382,8 @@ void LocalizationPipeline::search(const PoleScan& frame, LocalizationUpdate& upd
   const bool here = resolved && isNear(m_search.hypotheses[0], sameMetres, sameRadians);
   if (!resolved) {
     // The filter already covers several places, or a few more metres may resolve the ambiguity.
-    if (m_hasPose && m_monitor.health().state != HealthState::lost) return;
+    const bool isKnown = m_monitor.health().state != HealthState::lost || m_monitor.hasLeftMap();
+    if (m_hasPose && isKnown) return;
     if (m_submap.driven() < kPatience) return;
   } else if (here && !fitsBetter(m_search.hypotheses[0], frame)) {
     return;
