@@ -30,9 +30,9 @@ void print(std::ostream& out, const std::string& label, const UntoldTurn& turn) 
   out << "scans of " << (label.empty() ? "the LiDAR" : label)
       << " look raw: their points are in the order of measuring, " << name(turn.turn)
       << ", and begin up to " << io::fixed(turn.arc / degree, 0)
-      << " deg apart; [sensor] turn = " << name(turn.turn)
-      << ", moving_cut = true corrects them for the motion during a turn, turn = compensated says "
-         "that they are\n";
+      << " deg apart; set [sensor] turn = " << name(turn.turn)
+      << ", moving_cut = true to correct them for the motion during a turn, or turn = compensated "
+         "if they are corrected\n";
 }
 
 }  // namespace

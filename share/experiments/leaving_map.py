@@ -4,8 +4,8 @@
 Usage: leaving_map.py cut TRUTH.tum METRES MAP.csv OUT.csv
        leaving_map.py score TRUTH.tum METRES RUN_FOLDER >OUT.json
 cut: keeps the poles of the map that are nearest to the path in its first METRES, its third, and so on.
-score: of the runs of pole-localize in that folder (health, errors, covariances): each time that the vehicle left the
-map counts once. "ok wrong": more than 0.5 m off.
+score: of the health and the errors of the runs of pole-localize in that folder. Each time that the vehicle left the map
+counts once. "jumps": more than 20 m off beyond the map; "ok_wrong": `ok` and more than 0.5 m off, there or after it.
 """
 import csv
 import json

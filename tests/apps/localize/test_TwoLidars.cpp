@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "cli/SensorCounts.h"
 #include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
@@ -66,6 +68,16 @@ TEST(SensorCounts, SayThatLidarsDisagree) {
   EXPECT_HAS(text.str(),
              "LiDAR rear disagrees with the others: check pose and clock_offset_s in "
              "[sensor:rear]");
+}
+
+TEST(SensorCounts, SayThatScansLookRaw) {
+  SequenceCounts counts;
+  counts.untoldTurns["roof"] = {Turn::clockwise, M_PI / 2};
+  std::ostringstream text;
+  printSensors(text, counts);
+  EXPECT_HAS(text.str(), "scans of roof look raw");
+  EXPECT_HAS(text.str(),
+             "begin up to 90 deg apart; set [sensor] turn = clockwise, moving_cut = true");
 }
 
 TEST_F(TwoLidars, WithoutNamesTheFirstIsUsedAndTheOtherIsNamed) {

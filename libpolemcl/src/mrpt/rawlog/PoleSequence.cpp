@@ -30,7 +30,7 @@ struct Task {
   ScanTiming timing;  ///< as the rawlog states it
   ReadScan result;
   std::vector<FusionAgreement> agreements;  ///< of the parts, if LiDARs are fused
-  /// Of the scans that UntoldTurnSearch wants, by sensor label.
+  /// Order of the points by sensor label, for UntoldTurnSearch.
   std::map<std::string, std::optional<PointOrder>> orders;
   std::exception_ptr error;
 };
