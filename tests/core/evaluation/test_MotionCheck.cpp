@@ -52,6 +52,16 @@ TEST(MotionCheck, AgreesWithTruePoses) {
   EXPECT_NE(check.verdict().find("the poles agree"), std::string::npos) << check.verdict();
 }
 
+TEST(MotionCheck, ThatOnlyAPartAgreesIsSaid) {
+  std::vector<SessionScan> scans = drive(1);
+  EXPECT_EQ(checkMotion(scans).verdict().find("a part"), std::string::npos);
+  for (std::size_t i = 0; i < scans.size(); i += 24) scans[i].pose_map_robot.x += 0.2;
+  const MotionCheck check = checkMotion(scans);
+  EXPECT_FALSE(check.contradicts());
+  EXPECT_EQ(check.verdict().rfind("the poles agree with only a part of these poses (in ", 0), 0u)
+      << check.verdict();
+}
+
 TEST(MotionCheck, TellsAStepAndWhereItIs) {
   for (const Pose2D& step : {Pose2D{0.5, 0, 0}, Pose2D{0, 1.5, 0}, Pose2D{-4, 3, 0}})
     for (const std::size_t at : {2, 101, 104, 195}) {

@@ -147,6 +147,21 @@ TEST(LocalizationHealth, ChanceMatchesDoNotEndLost) {
   poor.expect(State::degraded, Reason::mismatch);
 }
 
+TEST(LocalizationHealth, ALostPoseIsConfirmedAnew) {
+  Feed feed;
+  feed.metres = 8;  // scans far apart: one with four chance matches is no reason for `ok`
+  feed.scans(10, 0.9);
+  feed.expect(State::ok, Reason::none);
+  feed.sigma = 6;
+  feed.scan(0, 0);
+  feed.expect(State::lost, Reason::spread);
+  feed.sigma = 0.1;
+  feed.scan(1);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scan(1);
+  feed.expect(State::ok, Reason::none);
+}
+
 TEST(LocalizationHealth, AShortStretchWithoutMappedPolesDegradesOnly) {
   Feed feed;
   feed.scans(60, 0.9);

@@ -148,6 +148,23 @@ TEST_F(PoleMotionsTest, TheyTellTheWayOfASlowSlide) {
   }
 }
 
+/// Scans 2 m and 0.3 s apart. Where few poles are seen for longer than scans are compared, the
+/// motion goes on, not the slip.
+TEST_F(PoleMotionsTest, ASlipIsNotBelievedWhereThePolesSayNothing) {
+  drive(2);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    scans[i].time = 0.3 * static_cast<double>(i);
+    if (i >= 12 && i < 30) scans[i].motion->mean.x *= 1.6;
+    if (i >= 18 && i < 23) scans[i].poles_robot.clear();
+  }
+  EXPECT_GE(fillMotions(scans).contradicted, 16u);
+  Pose2D way;
+  for (std::size_t i = 18; i < 23; ++i) way = compose(way, scans[i].motion->mean);
+  const Pose2D right = relative(truth[17], truth[22]);
+  EXPECT_LT(std::hypot(way.x - right.x, way.y - right.y), 1.5) << "of 10 m";
+  EXPECT_GT(scans[21].motion->covariance(0, 0), scans[18].motion->covariance(0, 0));
+}
+
 /// Errors that an odometry has, and what few poles contradict, are not theirs to judge.
 TEST_F(PoleMotionsTest, APoorOdometryStays) {
   const std::vector<PoleScan> right = scans;

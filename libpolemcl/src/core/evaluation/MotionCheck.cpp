@@ -121,7 +121,11 @@ std::string MotionCheck::verdict() const {
     return "the poles contradict these poses" + of(m_steps) + ", most before " +
            decimals(m_worstTime, 3) + " s, by " + decimals(m_worstMetres, 2) +
            " m: the poses have a step there";
-  if (!contradicts()) return "the poles agree with these poses" + of(m_told - m_contradicting);
+  if (!contradicts()) {
+    const char* part = 4 * m_contradicting > m_told ? "only a part of " : "";
+    return std::string("the poles agree with ") + part + "these poses" +
+           of(m_told - m_contradicting);
+  }
   return "the poles contradict these poses: truth of another drive, wrong time or wrong scan "
          "timing" +
          of(m_contradicting);

@@ -258,6 +258,8 @@ void HealthMonitor::confirm(const HealthInput& input) {
 }
 
 void HealthMonitor::judge(const HealthInput& input) {
+  // The scan that ends `lost` does not count: chance matches of one scan may do so.
+  if (m_confirmed && m_health.state == HealthState::lost) m_lostUntil = m_goodDriven + kConfirm;
   const bool fewMatched = m_health.matchedShare < kDegradedShare;
   // A lost filter spreads until it meets chance matches; they are no reason to believe it again.
   const bool believed = m_confirmed && m_health.state != HealthState::lost;
@@ -284,6 +286,7 @@ void HealthMonitor::judge(const HealthInput& input) {
       {((m_isEnough && fewMatched) || m_doubt > kDoubt) && !m_leftMap, State::degraded,
        Reason::mismatch},
       {wide, State::degraded, Reason::spread},
+      {m_goodDriven < m_lostUntil, State::degraded, Reason::converging},
       {m_goodDriven < m_gapUntil, State::degraded, Reason::timeGap},
       {blind || (m_leftMap && fewMatched), State::degraded, Reason::noPoles},
       {input.odometryContradicted, State::degraded, Reason::odometry},

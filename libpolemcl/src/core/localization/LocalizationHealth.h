@@ -105,6 +105,7 @@ class POLEMCL_EXPORT HealthMonitor {
   double m_doubt = 0;       ///< log-likelihood ratio of a wrong place, see doubt()
   double m_goodDriven = 0;  ///< metres with enough matches since begin()
   double m_gapUntil = 0;    ///< as many of them end a time gap
+  double m_lostUntil = 0;   ///< as many of them confirm a pose that was lost
 };
 
 }  // namespace polemcl

@@ -163,8 +163,23 @@ class MotionFiller {
       if (verdict == Verdict::borneOut) see(i, velocityOf(judged.motion, secondsFrom(before, i)));
     }
     if (verdict == Verdict::borneOut) m_isDoubted = false;
+    if (verdict == Verdict::open && isDoubtful(i)) return distrust(i);
     learnVelocity(i, velocityOf(m_scans[i].motion->mean, secondsTo(i)));
     m_coasted = 0;
+  }
+
+  /// The poles, which contradicted this odometry, say nothing of its motion, and it is not the one
+  /// that they told a moment ago.
+  bool isDoubtful(std::size_t i) const {
+    if (!m_isDoubted || !m_seen || m_scans[i].time - m_seenTime > kLongestCoast) return false;
+    const PoseWithCovariance& told = *m_scans[i].motion;
+    return isSlip(told.mean, motionAfter(*m_seen, secondsTo(i)), told.covariance);
+  }
+
+  void distrust(std::size_t i) {
+    ++m_filled.contradicted;
+    m_isTold[i] = false;
+    fill(i);
   }
 
   void see(std::size_t i, const Velocity& velocity) {

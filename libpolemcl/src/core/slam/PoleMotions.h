@@ -14,7 +14,7 @@ struct FilledMotions {
   std::size_t byPoles = 0;       ///< missing motions by the poles
   std::size_t coasted = 0;       ///< missing ones that go on as before, where too few poles told
   double firstCoasted = 0;       ///< time of the scan that the first of these leads to, s
-  std::size_t contradicted = 0;  ///< motions that the poles contradicted, and that they told anew
+  std::size_t contradicted = 0;  ///< motions of the odometry that were told anew
   double firstContradicted = 0;  ///< time of the scan that the first of these leads to, s
   bool all = false;              ///< no motion is that of an odometry
 };
@@ -30,7 +30,8 @@ struct FilledMotions {
 /// Motions of the odometry that the poles clearly contradict, from scan to scan or over up to a
 /// second, are told by the poles: a wheel slipped, or the odometry started anew. Errors up to
 /// 0.3 m + 10 % and 0.05 rad + 10 % in that time stay (a third, until both agree again over a
-/// second), and so do motions that fewer than four common poles contradict.
+/// second), and so do motions that fewer than four common poles contradict. Between such motions,
+/// those of which the poles say nothing are told anew if they are not the motion before.
 /// \throws Error naming the scan where too few poles told the motion over 2 s.
 FilledMotions fillMotions(std::vector<PoleScan>& scans);
 
