@@ -162,6 +162,22 @@ TEST(LocalizationHealth, ALostPoseIsConfirmedAnew) {
   feed.expect(State::ok, Reason::none);
 }
 
+/// Three of them are judged together, though the window of 8 m has room for one.
+TEST(LocalizationHealth, ScansFarApartWithFewPolesAreJudged) {
+  Feed feed;
+  feed.metres = 10;
+  feed.scans(2, 1, 3);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scans(2, 1, 3);
+  feed.expect(State::ok, Reason::none);
+  feed.scans(2, 0, 3);
+  EXPECT_NE(feed.last.state, State::ok);
+  Feed far;  // too far apart
+  far.metres = 20;
+  far.scans(10, 1, 3);
+  far.expect(State::degraded, Reason::converging);
+}
+
 TEST(LocalizationHealth, AShortStretchWithoutMappedPolesDegradesOnly) {
   Feed feed;
   feed.scans(60, 0.9);

@@ -12,6 +12,9 @@ namespace {
 /// Scans over this distance are judged together, m. Scans from one viewpoint count as one: a
 /// vehicle that stands beside something odd is not lost.
 constexpr double kWindow = 8;
+/// But at least this number of scans, where they are farther apart: up to this distance, m.
+constexpr std::size_t kLeastViewpoints = 3;
+constexpr double kLongestWindow = 36;
 /// Lost: scans over this longer distance agree, m. Where most poles are gone or new, few known
 /// poles are seen for some metres.
 constexpr double kLostWindow = 18;
@@ -141,7 +144,9 @@ void HealthMonitor::remember(const HealthInput& input, double metres) {
     m_viewpoints.emplace_back();
     m_viewpoints.back().driven = m_driven;
   }
-  while (m_driven - m_viewpoints.front().driven > kLostWindow) m_viewpoints.pop_front();
+  while (m_driven - m_viewpoints.front().driven >
+         (m_viewpoints.size() > kLeastViewpoints ? kLostWindow : kLongestWindow))
+    m_viewpoints.pop_front();
   Viewpoint scan;
   for (const PoleMatch& match : input.matches) {
     scan.seen += match.confidence;
@@ -199,8 +204,9 @@ void HealthMonitor::doubtByRivals(const HealthInput& input) {
 
 HealthMonitor::Window HealthMonitor::sumOver(double metres) const {
   Window sum;
+  std::size_t left = m_viewpoints.size();
   for (const Viewpoint& viewpoint : m_viewpoints) {
-    if (m_driven - viewpoint.driven > metres) continue;
+    if (left-- > kLeastViewpoints && m_driven - viewpoint.driven > metres) continue;
     sum.seen += viewpoint.seen;
     sum.matched += viewpoint.matched;
     sum.squared += viewpoint.squared;
