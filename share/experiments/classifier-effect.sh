@@ -3,7 +3,7 @@
 # Usage: share/experiments/classifier-effect.sh DATA_DIR OUT [KILOMETRE]
 #   DATA_DIR   folder with kitti_raw_0005/, kitti_odom_00_long/ and kitti_odom_00_km/
 #   OUT        gets result.json and table.txt; simulated scans in OUT/scans are used again
-#   KILOMETRE  the scans of kitti_odom_00_km as a folder (its README.md says how to lay them out)
+#   KILOMETRE  the scans of kitti_odom_00_km as a folder (228 of Jichao-Peng/multi-sensor_fusion_learning)
 # Simulated worlds 501 and 511 ([realism] scale = 1) of four LiDARs, 120 m, a scan a metre; the scans 40 to 79 of
 # kitti_raw_0005; the kilometre: map of the even scans, localized on the odd ones, odometry with 2 % noise,
 # 5 runs of 1000 particles. Maps hold all scans; one to one with the true poles, within 0.5 m in simulated worlds

@@ -4,7 +4,7 @@
 # (3.5 m apart, 1.8 scans a second), with a real laser odometry. 100 trials each; since the drive has 400 m, they overlap.
 # Usage: share/experiments/faults-kilometre.sh DATA_DIR KILOMETRE OUT
 #   DATA_DIR   folder with kitti_odom_00_km/ and kitti_raw_0005/, whose map is the wrong one
-#   KILOMETRE  the scans of DATA_DIR/kitti_odom_00_km as a folder (its README.md says how to lay them out)
+#   KILOMETRE  the scans of DATA_DIR/kitti_odom_00_km as a folder (228 of Jichao-Peng/multi-sensor_fusion_learning)
 #   OUT        gets maps, drives, one JSON and one text for each fault, table.txt and faults.json
 # 8 s before each fault, 10 s of it, 100 m after it; kidnapped by 20 m and more. Seeds 501 and 502.
 # Programs: build/bin, or POLEMCL_BIN. Needs jq; three minutes.

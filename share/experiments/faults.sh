@@ -18,7 +18,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 worlds="521 522 523 524 525"
 trials=40
-healthy=9 # drives of each world; 45 of 0.24 h are 10.8 h
+healthy=9 # drives of each world; 45 of 0.24 h are 10.9 h
 if [ "${1:-}" = --quick ]; then
   worlds=521
   trials=20

@@ -5,7 +5,8 @@ Usage: leaving_map.py cut TRUTH.tum METRES MAP.csv OUT.csv
        leaving_map.py score TRUTH.tum METRES RUN_FOLDER >OUT.json
 cut: keeps the poles of the map that are nearest to the path in its first METRES, its third, and so on.
 score: of the health and the errors of the runs of pole-localize in that folder. Each time that the vehicle left the map
-counts once. "jumps": more than 20 m off beyond the map; "ok_wrong": `ok` and more than 0.5 m off, there or after it.
+counts once. "jumps": more than 20 m off beyond the map; "ok_wrong": `ok` and more than 0.5 m off, there or after it;
+"lost_after_min_m": the shortest way beyond the map after which it was `lost`.
 """
 import csv
 import json
@@ -40,7 +41,7 @@ def column(file, name):
 def score(truth, metres, folder):
     along = path(truth)[1]
     result = {"left": 0, "jumps": 0, "ok_wrong": 0, "ok_wrong_max_m": 0, "off_max_m": 0, "ok_again_max_m": 0,
-              "never_ok_again": 0, "lost": 0}
+              "never_ok_again": 0, "lost": 0, "lost_after_min_m": metres}
     for health in sorted(pathlib.Path(folder).glob("run_*_health.csv")):
         ok = np.array([state == "ok" for state in column(health, "state")])
         lost = np.array([state == "lost" for state in column(health, "state")])
@@ -57,6 +58,8 @@ def score(truth, metres, folder):
             result["left"] += 1
             result["jumps"] += bool(np.any(error[off] > 20))
             result["lost"] += bool(np.any(lost[off]))
+            way = along[off[lost[off]]] - along[off[0]]
+            result["lost_after_min_m"] = min(result["lost_after_min_m"], float(np.min(way, initial=metres)))
             result["ok_wrong"] += bool(np.any(wrong))
             result["ok_wrong_max_m"] = max(result["ok_wrong_max_m"], float(np.max(error[both][wrong], initial=0)))
             result["off_max_m"] = max(result["off_max_m"], float(np.nanmax(error[off])))

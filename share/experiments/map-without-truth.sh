@@ -3,7 +3,7 @@
 # Usage: share/experiments/map-without-truth.sh DATA_DIR OUT [--kilometre SCANS] [--tracks DIR]
 #   DATA_DIR     folder with kitti_raw_0005/, vlp16_loop/ and nuscenes_scene/
 #   OUT          gets maps, pictures, trajectories, result.json and table.txt
-#   --kilometre  the scans of DATA_DIR/kitti_odom_00_km as a folder (its README.md says how to lay them out)
+#   --kilometre  the scans of DATA_DIR/kitti_odom_00_km as a folder (228 of Jichao-Peng/multi-sensor_fusion_learning)
 #   --tracks     folder of the road kaist01.txt.gz (sensor poses, 12 numbers a line)
 # Odometry is the true motion with 2 % noise, 1 % too long and 0.01 deg/m off (seeds 7 to 11 on the VLP-16 loop, 7 on
 # the others); on the kilometre also that of a real laser odometry. nuScenes has the poses by the planes in its scans

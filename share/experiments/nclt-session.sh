@@ -1,5 +1,5 @@
 #!/bin/sh
-# Another day and another's map: the NCLT session 2013-01-10 in the authors' pole map of 2012, and poles from a cloud map.
+# Another day and another's map: the NCLT session 2013-01-10 in the authors' pole map, and poles from a cloud map.
 # Usage: share/experiments/nclt-session.sh DATA_DIR KEYFRAMES_GIT_DIR TRUTH OUT
 #   DATA_DIR           has published/nclt_map_8_0.50_0.08.npz
 #   KEYFRAMES_GIT_DIR  git directory of a repository whose history has data/ch9/keyframes.txt, key frames and map_data/

@@ -3,7 +3,7 @@
 # Usage: share/experiments/real-drives.sh DATA_DIR OUT [--kilometre SCANS] [--odometry SCALE,YAW] [SECTION.KEY=VALUE...]
 #   DATA_DIR    folder with kitti_raw_0005/, vlp16_loop/ and nuscenes_scene/
 #   OUT         gets maps, trajectories, result.json and table.txt
-#   --kilometre  the scans of DATA_DIR/kitti_odom_00_km as a folder (its README.md says how to lay them out).
+#   --kilometre  the scans of DATA_DIR/kitti_odom_00_km as a folder (228 of Jichao-Peng/multi-sensor_fusion_learning).
 #               Then this drive alone, odd scans in the map of the even ones: with odometry as in the other
 #               drives, and with that of laser_odometry.txt ("kilometre-laser"); and the paper's method
 #   --odometry  errors of the odometry that stay: a share of the distance, and degrees per metre

@@ -19,7 +19,7 @@
 
 namespace polemcl {
 
-/// \brief Constants of the method; tests change some. Measured in share/doc/global.md.
+/// \brief Constants of the method; tests change some. Measured in share/reports/BENCHMARK.md.
 struct POLEMCL_EXPORT GlobalOptions {
   int minHits = 2;  ///< poles of the submap with fewer hits are not used
   /// Probability that a true pole of the submap is on the map, in (0, 1).
