@@ -265,7 +265,8 @@ void HealthMonitor::confirm(const HealthInput& input) {
 
 void HealthMonitor::judge(const HealthInput& input) {
   // The scan that ends `lost` does not count: it may match by chance.
-  if (m_confirmed && m_health.state == HealthState::lost) m_lostUntil = m_goodDriven + kConfirmFound;
+  if (m_confirmed && m_health.state == HealthState::lost)
+    m_lostUntil = m_goodDriven + kConfirmFound;
   const bool fewMatched = m_health.matchedShare < kDegradedShare;
   // A lost filter spreads until it meets chance matches; they are no reason to believe it again.
   const bool believed = m_confirmed && m_health.state != HealthState::lost;
