@@ -196,11 +196,11 @@ std::map<std::string, std::string> mapFacts(const AllSettings& settings,
   info["config"] = settingsText(settings);
   if (datum) info[io::kDatumKey] = io::datumText(*datum);
   if (job.add) addFacts(before, info);
-  keepWarnings(buildWarnings(summary, job), info);
+  keepWarnings(warningsOf(summary, job), info);
   return info;
 }
 
-std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job) {
+std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBuildJob& job) {
   std::vector<std::string> warnings = summary.timingDoubts;
   const auto doubt = [&](std::size_t drive, const std::string& text) {
     if (!text.empty()) warnings.push_back(job.inputs[drive].filename().string() + ": " + text);
