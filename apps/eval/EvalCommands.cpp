@@ -1,16 +1,112 @@
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <sstream>
+#include <vector>
 
+#include "cli/JsonFile.h"
 #include "cli/Outputs.h"
-#include "eval/DetectionModelApp.h"
+#include "eval/DriveTruth.h"
 #include "eval/EvalApp.h"
 #include "eval/LabelledFeatures.h"
 #include "import/DatasetImport.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
+#include "sim/detections/DetectionModel.h"
+#include "sim/detections/DetectionModelFit.h"
+#include "sim/detections/DetectionSummary.h"
+#include "simulate/SimulatedPoles.h"
 
 namespace polemcl::apps {
 namespace {
+
+/// `pole-eval model`.
+struct FitModelOptions {
+  /// Rawlogs that `pole-simulate --poles` wrote, with their P_config.ini beside them: two for each
+  /// street, on two days.
+  std::vector<std::filesystem::path> drives;
+  std::filesystem::path model;  ///< JSON to write
+};
+
+/// `pole-eval sightings`.
+struct EvalObservationsOptions {
+  std::filesystem::path poles;  ///< rawlog of `pole-simulate --poles`, P_config.ini beside it
+  std::optional<std::filesystem::path> json;
+};
+
+/// A drive with what it needs to be looked at: the world is built again from its settings.
+struct LoadedDrive {
+  AllSettings settings;
+  std::unique_ptr<sim::SimulatedDrive> drive;
+  sim::ObservedDrive observed;
+
+  explicit LoadedDrive(const std::filesystem::path& rawlog)
+      : settings(loadSettings(poleDriveFiles(rawlog).config.string())),
+        drive(std::make_unique<sim::SimulatedDrive>(settings.simulation, settings.sensor)) {
+    observed.drive = drive.get();
+    streamStoredPoles(rawlog, [&](const ReadScan& scan) {
+      observed.poles.push_back(scan.observation->poles);
+      observed.points.push_back(scan.observation->points);
+    });
+    if (observed.poles.size() != drive->scans())
+      throw Error(rawlog.string() + ": holds " + std::to_string(observed.poles.size()) +
+                  " scans, and the drive of its settings has " + std::to_string(drive->scans()));
+  }
+};
+
+std::string describe(const std::vector<LoadedDrive>& drives) {
+  std::ostringstream text;
+  std::size_t scans = 0;
+  double length = 0;
+  text << "worlds";
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    if (i % 2 == 0) text << (i > 0 ? ", " : " ") << drives[i].settings.simulation.world.seed;
+    scans += drives[i].observed.poles.size();
+    length += drives[i].drive->length();
+  }
+  text << "; " << scans << " scans over " << static_cast<int>(length) << " m, two days each";
+  return text.str();
+}
+
+/// Fits and writes the model.
+/// \throws Error naming the file: no P_config.ini, another number of scans than its drive has, an
+///         odd number of drives, drives that do not belong together.
+sim::DetectionModel fitModel(const FitModelOptions& options) {
+  if (options.drives.empty() || options.drives.size() % 2 != 0)
+    throw Error("--drives: " + std::to_string(options.drives.size()) +
+                " are given; two for each street are needed, of two days");
+  std::vector<LoadedDrive> drives;
+  for (const auto& rawlog : options.drives) drives.emplace_back(rawlog);
+  std::vector<sim::ObservedStreet> streets;
+  for (std::size_t i = 0; i < drives.size(); i += 2)
+    streets.push_back({drives[i].observed, drives[i + 1].observed});
+  const double maxRange = drives.front().settings.extraction.scanLine.maxRange;
+  auto model = sim::fitDetectionModel(streets, maxRange, describe(drives));
+  sim::writeDetectionModel(options.model, model);
+  return model;
+}
+
+/// Figures of one simulated drive, cast or drawn. \throws Error as fitModel().
+sim::DetectionSummary evalObservations(const EvalObservationsOptions& options) {
+  const LoadedDrive drive(options.poles);
+  auto s = sim::summarizeDetections(drive.observed, drive.settings.extraction.scanLine.maxRange);
+  if (!options.json) return s;
+  writeJson(*options.json, {{"scans", s.scans},
+                            {"detections", s.detections},
+                            {"per_scan", s.perScan},
+                            {"false_per_scan", s.falsePerScan},
+                            {"lasting_false_per_scan", s.lastingFalsePerScan},
+                            {"centre_median_m", s.centreMedian},
+                            {"centre_p90_m", s.centre90},
+                            {"nees_mean", s.neesMean},
+                            {"nees_median", s.neesMedian},
+                            {"found_run_m", s.foundRun},
+                            {"missed_run_m", s.missedRun},
+                            {"confidence", s.confidence},
+                            {"range_edges_m", s.rangeEdges},
+                            {"recall", s.recall}});
+  return s;
+}
 
 std::string shownText(const std::optional<double>& value, int decimals, double factor = 1) {
   return value ? io::fixed(*value * factor, decimals) : "-";

@@ -10,7 +10,7 @@
 #include "io/file/ErrorPlace.h"
 #include "io/map/Datum.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 
 namespace polemcl::apps {
 namespace {

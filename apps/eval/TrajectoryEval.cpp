@@ -7,7 +7,7 @@
 #include "io/data/Trajectory.h"
 #include "io/file/ErrorPlace.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "localize/LocalizeReport.h"
 #include "report/picture/MapPicture.h"
 #include "report/scene/MapScene.h"

@@ -11,7 +11,7 @@
 #include "io/dataset/ScanFiles.h"
 #include "io/file/AtomicFile.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 
 namespace polemcl::apps {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "localize/LivePlayer.h"
 #include "localize/RunFolder.h"
-#include "localize/SceneRecorder.h"
 
 namespace polemcl::apps {
 
@@ -20,6 +19,8 @@ struct WatchedRun {
   SequenceOptions reading = {};                       ///< of the scans whose points are shown
   report::Playback::Source source = report::Playback::Source::rawlog;
 };
+
+class SceneRecorder;
 
 /// \brief What `[view]` asks for. Everything is opened and refused here, before the run.
 ///

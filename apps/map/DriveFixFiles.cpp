@@ -44,10 +44,6 @@ DriveFix between(const GnssFix& fix, const MappingSession& drive, PathPlace next
   return placed;
 }
 
-double median(std::vector<double> values) {
-  return elementOfRank(values, values.size() / 2);
-}
-
 /// The datum of the median latitude and longitude. \param fixes At least one.
 io::Datum middleOf(const std::vector<GnssFix>& fixes) {
   std::vector<double> latitudes, longitudes;
@@ -55,7 +51,8 @@ io::Datum middleOf(const std::vector<GnssFix>& fixes) {
     latitudes.push_back(fix.latitude);
     longitudes.push_back(fix.longitude);
   }
-  return {median(std::move(latitudes)), median(std::move(longitudes)), 0};
+  const std::size_t half = fixes.size() / 2;
+  return {elementOfRank(latitudes, half), elementOfRank(longitudes, half), 0};
 }
 
 /// Without those that no drive can explain: what receivers tell before they know anything.

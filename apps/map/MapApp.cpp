@@ -80,13 +80,6 @@ CLI::Option* addEstimateOption(CLI::App& cli, MappingJob& job) {
   return estimate;
 }
 
-std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBuildJob& job) {
-  return buildWarnings(summary, job);
-}
-std::vector<std::string> warningsOf(const MapUpdateSummary& summary, const MapUpdateJob& job) {
-  return updateWarnings(summary, job);
-}
-
 /// A subcommand that maps sessions by `work(job, settings, progress)`.
 template <class Job, class Work>
 Subcommand mappingCommand(CLI::App& cli, const std::shared_ptr<Job>& job, const Work& work) {

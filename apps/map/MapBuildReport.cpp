@@ -5,13 +5,33 @@
 #include <sstream>
 
 #include "cli/Version.h"
+#include "core/slam/DriveFixes.h"
+#include "core/slam/PoleMotions.h"
 #include "io/file/TextFile.h"
-#include "map/DriveDoubts.h"
 
 namespace polemcl::apps {
 namespace {
 
 constexpr double kManyTwins = 0.25;  ///< share of the poles
+
+/// Motions of the odometry that the poles contradict; empty when there are none.
+std::string odometryDoubt(const FilledMotions& filled) {
+  if (filled.contradicted == 0) return {};
+  return "the poles contradict " + std::to_string(filled.contradicted) +
+         (filled.contradicted == 1 ? " motion" : " motions") + " of its odometry, the first at " +
+         io::fixed(filled.firstContradicted, 3) +
+         " s, and told the way there; check whether the odometry slips or starts anew";
+}
+
+/// Positions from satellites of which many do not fit the path; empty otherwise.
+std::string fixesDoubt(const FixFit& fit) {
+  if (!fit.isDoubtful()) return {};
+  return std::to_string(fit.given - fit.fitting) + " of " + std::to_string(fit.given) +
+         " positions from satellites do not fit its path, they lie " + io::fixed(fit.distance, 2) +
+         " m from it (median); the map may lie wrong on Earth by far more: a wrong clock shifts it "
+         "by speed times time; check their clock (GPS time is 18 s ahead of UTC), the place of the "
+         "antenna and sigma";
+}
 
 double scanSpacing(const MapBuildSummary& summary) {
   const std::size_t steps = summary.visited - std::min(summary.visited, summary.sessions.size());
@@ -176,11 +196,11 @@ std::map<std::string, std::string> mapFacts(const AllSettings& settings,
   info["config"] = settingsText(settings);
   if (datum) info[io::kDatumKey] = io::datumText(*datum);
   if (job.add) addFacts(before, info);
-  keepWarnings(buildWarnings(summary, job), info);
+  keepWarnings(warningsOf(summary, job), info);
   return info;
 }
 
-std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job) {
+std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBuildJob& job) {
   std::vector<std::string> warnings = summary.timingDoubts;
   const auto doubt = [&](std::size_t drive, const std::string& text) {
     if (!text.empty()) warnings.push_back(job.inputs[drive].filename().string() + ": " + text);

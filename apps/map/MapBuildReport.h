@@ -24,7 +24,7 @@ std::string noPolesText(const MapBuildSummary& summary);
 
 /// \brief Signs that poses or timing are wrong: poles that contradict them, many twins. Also in the
 /// map's info, key `warnings`.
-std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job);
+std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBuildJob& job);
 
 /// \brief What the program prints.
 std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job);

@@ -1,6 +1,5 @@
 #include "map/MapFiles.h"
 
-#include "io/map/PolePositions.h"
 #include "io/map/PoleTables.h"
 #include "map/GeoJson.h"
 

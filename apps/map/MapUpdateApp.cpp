@@ -126,7 +126,7 @@ Json summaryJson(const MapUpdateSummary& summary, const MapUpdateJob& job) {
     session.update(sessionJson(summary.sessions[i]));
     json["sessions"].push_back(session);
   }
-  json["warnings"] = updateWarnings(summary, job);
+  json["warnings"] = warningsOf(summary, job);
   return json;
 }
 
@@ -158,7 +158,7 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& setti
     summary.skipped += session.skipped;
     path.insert(path.end(), session.path.begin(), session.path.end());
   }
-  keepWarnings(updateWarnings(summary, job), info);
+  keepWarnings(warningsOf(summary, job), info);
   const io::PoleMapData after = io::mapData(map, info);
   summary.poles = after.poles.size();
   if (after.poles.empty())
@@ -171,7 +171,7 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& setti
   return summary;
 }
 
-std::vector<std::string> updateWarnings(const MapUpdateSummary& summary, const MapUpdateJob& job) {
+std::vector<std::string> warningsOf(const MapUpdateSummary& summary, const MapUpdateJob& job) {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < summary.sessions.size(); ++i) {
     const MapUpdateCounts& c = summary.sessions[i];

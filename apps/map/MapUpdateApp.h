@@ -39,6 +39,6 @@ std::string summaryText(const MapUpdateSummary& summary, const MapUpdateJob& job
 
 /// \brief A line for each session of which more than 5 % of the poles in view "moved". Poles seldom
 /// do: rather the poses are wrong.
-std::vector<std::string> updateWarnings(const MapUpdateSummary& summary, const MapUpdateJob& job);
+std::vector<std::string> warningsOf(const MapUpdateSummary& summary, const MapUpdateJob& job);
 
 }  // namespace polemcl::apps

@@ -9,7 +9,7 @@
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "report/scene/MapScene.h"
 
 namespace polemcl::apps {

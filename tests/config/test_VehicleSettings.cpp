@@ -3,6 +3,7 @@
 #include "cli/Settings.h"
 #include "config/Config.h"
 #include "support/ExpectHas.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_vehicle_settings {
 namespace {
@@ -14,12 +15,7 @@ AllSettings load(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    load(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return tests::messageOf([&] { load(text); });
 }
 
 const std::string s_two =

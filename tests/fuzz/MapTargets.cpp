@@ -3,7 +3,6 @@
 #include "io/file/Npz.h"
 #include "io/map/MapScans.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
 #include "io/map/PoleTables.h"
 #include "map/GeoJson.h"
 #include "map/Inventory.h"

@@ -6,7 +6,6 @@
 #include "io/file/CsvTable.h"
 #include "io/file/Date.h"
 #include "io/map/Datum.h"
-#include "io/map/PolePositions.h"
 #include "io/map/PoleTables.h"
 #include "map/Inventory.h"
 #include "map/SessionPoses.h"

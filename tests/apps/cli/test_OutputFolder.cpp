@@ -1,6 +1,7 @@
 #include <polemcl/core/common/Types.h>
 #include "cli/OutputFolder.h"
 #include "support/DiskCalls.h"
+#include "support/Refusal.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_output_folder {
@@ -16,14 +17,8 @@ class OutputFolderTest : public testing::Test {
     return OutputFolder(folder / name, "a drive", {"mark", "data", "scans", "scans/[0-9][0-9].bin"},
                         "mark");
   }
-  /// The message of the refusal, empty when accepted.
   std::string refusal(const std::string& name) {
-    try {
-      open(name);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return messageOf([&] { open(name); });
   }
   std::string parent() const { return folder.path().filename(); }
   TempFolder folder;
@@ -128,7 +123,7 @@ TEST_F(OutputFolderTest, RefusesAFolderWithForeignFiles) {
 TEST_F(OutputFolderTest, RefusesForeignFilesInASubfolder) {
   writeText(folder / "out" / "mark", "old");
   writeText(folder / "out" / "scans" / "01.bin", "old");
-  EXPECT_EQ(refusal("out"), "");
+  EXPECT_EQ(refusal("out"), "no error");
   writeText(folder / "out" / "scans" / "01_cleaned.bin", "by hand");
   EXPECT_NE(refusal("out").find("scans/01_cleaned.bin"), std::string::npos) << refusal("out");
   EXPECT_TRUE(fs::exists(folder / "out" / "scans" / "01_cleaned.bin"));

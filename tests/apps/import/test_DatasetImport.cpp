@@ -11,6 +11,7 @@
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/DiskCalls.h"
 #include "support/ExpectHas.h"
+#include "support/Refusal.h"
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_dataset_import {
@@ -56,12 +57,7 @@ class DatasetImport : public testing::Test {
     options.output = folder / "out.rawlog";
   }
   std::string errorOf() {
-    try {
-      importDataset(options);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return messageOf([&] { importDataset(options); });
   }
   TempFolder folder;
   ImportOptions options;

@@ -5,7 +5,7 @@
 #include "io/data/Trajectory.h"
 #include "io/dataset/LabelledScans.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "labels/LabelsApp.h"
 #include "sim/drive/Simulation.h"
 #include "support/ScanFolders.h"

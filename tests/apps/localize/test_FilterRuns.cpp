@@ -3,6 +3,7 @@
 
 #include "localize/FilterRuns.h"
 #include "support/PoleStreet.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_filter_runs {
 
@@ -130,13 +131,7 @@ TEST_F(FilterRunsTest, HandsRefusalsOn) {
 TEST_F(FilterRunsTest, RefusesMoreParticlesThanFitSideBySide) {
   runs.runs = 51;
   start.particles = 1000000;
-  try {
-    FilterRuns({street.map}, settings(runs));
-    ADD_FAILURE() << "not refused";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("51 runs of 1000000 particles"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_REFUSED(FilterRuns({street.map}, settings(runs)), "51 runs of 1000000 particles");
 }
 
 }  // namespace polemcl::test_filter_runs

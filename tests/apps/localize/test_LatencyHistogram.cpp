@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "localize/LatencyHistogram.h"
+#include "localize/LocalizeTimings.h"
 
 namespace polemcl::test_latency_histogram {
 

@@ -6,6 +6,7 @@
 #include "localize/FilterRuns.h"
 #include "localize/RunView.h"
 #include "support/PoleStreet.h"
+#include "support/Refusal.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_run_view {
@@ -54,12 +55,7 @@ class RunViewTest : public testing::Test {
     return done;
   }
   std::string errorOf() {
-    try {
-      run();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return messageOf([&] { run(); });
   }
 
   TempFolder folder;
@@ -142,13 +138,11 @@ TEST_F(RunViewTest, AFrameThatCannotBeWrittenEndsTheRun) {
   RunView watched(view, {street.map->poles(), "drive"}, results);
   for (const auto& name : names(folder.path()))  // the folder under its temporary name
     if (name.rfind("frames", 0) == 0) fs::remove_all(folder / name);
-  try {
+  const std::string message = messageOf([&] {
     play(watched);
     watched.finish();
-    FAIL();
-  } catch (const Error& error) {  // of the frame, not only of the folder that is missing at the end
-    EXPECT_NE(std::string(error.what()).find("000000.png"), std::string::npos) << error.what();
-  }
+  });
+  EXPECT_HAS(message, "000000.png");  // not only the folder that is missing at the end
 }
 
 TEST_F(RunViewTest, WithoutADisplayAWindowIsRefused) {

@@ -7,6 +7,7 @@
 
 #include "map/GeoJson.h"
 #include "support/ExpectHas.h"
+#include "support/Refusal.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_geo_json {
@@ -47,13 +48,9 @@ class GeoJson : public testing::Test {
   std::string refusal(const std::string& text,
                       const std::optional<io::Datum>& datum = std::nullopt) const {
     const std::string file = write(text);
-    try {
-      readGeoJson(file, datum);
-    } catch (const Error& error) {
-      EXPECT_EQ(std::string(error.what()).rfind(file, 0), 0u) << error.what();
-      return error.what();
-    }
-    return "accepted";
+    const std::string message = tests::messageOf([&] { readGeoJson(file, datum); });
+    EXPECT_EQ(message.rfind(file, 0), 0u) << message;
+    return message;
   }
   samples::Folder folder{"GeoJson"};
 };

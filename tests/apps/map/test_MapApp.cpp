@@ -6,7 +6,7 @@
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "map/MapApp.h"
 #include "map/MapBuildReport.h"
 #include "mrpt/rawlog/GnssFixes.h"

@@ -2,7 +2,7 @@
 
 #include "core/mapping/MapAccumulator.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "map/MapApp.h"
 #include "map/MapConvertApp.h"
 #include "support/DiskCalls.h"

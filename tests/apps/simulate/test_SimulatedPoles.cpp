@@ -4,7 +4,7 @@
 #include "extract/ExtractApp.h"
 #include "import/DatasetImport.h"
 #include "io/data/Trajectory.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "mrpt/rawlog/PoleSequence.h"
 #include "simulate/SimulateApp.h"
 #include "support/DiskCalls.h"

@@ -14,7 +14,7 @@
 
 #include "core/global_localization/GlobalLocalizer.h"
 #include "io/file/Npz.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "support/PoleCity.h"
 
 namespace polemcl::test_global_localizer_on_maps {

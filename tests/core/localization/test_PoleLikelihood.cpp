@@ -100,10 +100,6 @@ double oracle(const Scene& scene, const Pose2D& pose, const LikelihoodOptions& o
 
 constexpr LikelihoodModel kModels[] = {LikelihoodModel::paper, LikelihoodModel::mixture};
 
-void expectRefused(const LikelihoodOptions& options, const std::string& field) {
-  EXPECT_REFUSED(checkOptions(options), field);
-}
-
 }  // namespace
 
 TEST(PoleLikelihood, PaperByHand) {
@@ -185,12 +181,12 @@ TEST(PoleLikelihood, FlooredEqualsItsFormula) {
 
 TEST(PoleLikelihood, FlooredRefusesWhatItCannotDo) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::floored, true);
-  expectRefused(options, "weighted");
+  EXPECT_REFUSED(checkOptions(options), "weighted");
   options.weighted = false;
   checkOptions(options);
   for (const double bad : {0.0, -0.2, std::nan(""), HUGE_VAL, 1e-12}) {
     options.floor = bad;
-    expectRefused(options, "floor");
+    EXPECT_REFUSED(checkOptions(options), "floor");
   }
 }
 

@@ -5,16 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "core/common/Binder.h"
 #include "core/mapping/MapSession.h"
 #include "core/mapping/MapUpdater.h"
+#include "support/Poles.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_map_updater {
 
 using namespace polemcl;
+using tests::messageOf;
 
 namespace {
 
@@ -23,15 +25,7 @@ struct Place {
 };
 
 MapPole poleAt(double x, double y) {
-  MapPole pole;
-  pole.x = x;
-  pole.y = y;
-  pole.radius = 0.1;
-  pole.bottom = 0.2;
-  pole.top = 4;
-  pole.count = 30;
-  pole.covariance = Eigen::Matrix2d::Identity() * 1e-4;
-  return pole;
+  return tests::mapPoleAt(x, y, 1e-4);
 }
 
 /// A drive along x, a scan a metre from 0 to 40 m, heading 90° to the left, so that frames matter.
@@ -77,15 +71,6 @@ const LandmarkRecord* find(const LandmarkMap& map, double x, double y) {
 LandmarkMap updatedBy(const LandmarkMap& map, const std::vector<SessionScan>& scans,
                       MapUpdateCounts* counts = nullptr) {
   return updateMap(map, scans, {}, {}, counts);
-}
-
-std::string refusal(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace
@@ -416,18 +401,19 @@ TEST(MapUpdater, AFreshMapGetsItsHistoryFromItsScans) {
 TEST(MapUpdater, RefusesBadScansAndOptions) {
   std::vector<SessionScan> scans = drive({{10, 5}});
   scans[3].visibilityRange[7] = -1;
-  EXPECT_NE(refusal([&] { updatedBy({}, scans); }).find("visibility range of " + nameOf(scans[3])),
-            std::string::npos);
+  EXPECT_NE(
+      messageOf([&] { updatedBy({}, scans); }).find("visibility range of " + nameOf(scans[3])),
+      std::string::npos);
   scans = drive({{10, 5}});
   scans[4].pose_map_robot.x = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(refusal([&] { updatedBy({}, scans); }).find("pose of " + nameOf(scans[4])),
+  EXPECT_NE(messageOf([&] { updatedBy({}, scans); }).find("pose of " + nameOf(scans[4])),
             std::string::npos);
   const auto refused = [](auto field, auto value) {
     MapUpdateOptions o;
     o.*field = value;
-    return refusal([&] { checkOptions(o); });
+    return messageOf([&] { checkOptions(o); });
   };
-  EXPECT_EQ(refusal([] { checkOptions(MapUpdateOptions()); }), "");
+  EXPECT_EQ(messageOf([] { checkOptions(MapUpdateOptions()); }), "no error");
   EXPECT_NE(refused(&MapUpdateOptions::range, 0.0).find("range_m"), std::string::npos);
   EXPECT_NE(refused(&MapUpdateOptions::minSeen, 0).find("min_seen"), std::string::npos);
   EXPECT_NE(refused(&MapUpdateOptions::sessionSigma, -1.0).find("session_sigma_m"),

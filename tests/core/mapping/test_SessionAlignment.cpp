@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/mapping/SessionAlignment.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_session_alignment {
 
@@ -17,13 +18,7 @@ namespace {
 constexpr double s_length = 300;  // m of street
 
 MapPole standing(double x, double y) {
-  MapPole pole;
-  pole.x = x;
-  pole.y = y;
-  pole.radius = 0.1;
-  pole.count = 30;
-  pole.covariance = Eigen::Matrix2d::Identity() * 1e-4;
-  return pole;
+  return tests::mapPoleAt(x, y, 1e-4);
 }
 
 /// A pole every 12 m on each side, not quite regular.

@@ -2,7 +2,7 @@
 
 #include "io/file/Npz.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "support/IoFiles.h"
 #include "support/NumpyFiles.h"
 

@@ -1,4 +1,3 @@
-#include "io/map/PolePositions.h"
 #include "io/map/PoleTables.h"
 #include "support/IoFiles.h"
 #include "support/NumpyFiles.h"

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/evaluation/TrajectoryEvaluation.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 
 namespace polemcl::test_published_maps {
 

@@ -15,7 +15,7 @@
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "core/common/PoleIndex.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "support/ExpectHas.h"
 #include "support/Samples.h"
 

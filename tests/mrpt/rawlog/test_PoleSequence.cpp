@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "support/ExpectHas.h"
+#include "support/Refusal.h"
 #include "support/SequenceFiles.h"
 
 namespace polemcl::test_pole_sequence {
@@ -407,12 +408,8 @@ TEST_F(PoleSequenceTest, ErrorsComeInTheirPlace) {
     auto o = options();
     o.threads = threads;
     std::size_t handedOut = 0;
-    std::string text;
-    try {
-      streamPoles(bench.path, o, [&](const ReadScan&) { ++handedOut; });
-    } catch (const Error& error) {
-      text = error.what();
-    }
+    const std::string text = tests::messageOf(
+        [&] { streamPoles(bench.path, o, [&](const ReadScan&) { ++handedOut; }); });
     EXPECT_EQ(handedOut, 1u);
     EXPECT_HAS(text, "s.rawlog: scan 1: ");
     EXPECT_HAS(text, "first.bin");

@@ -14,6 +14,7 @@
 #include "mrpt/rawlog/RawlogReader.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "support/ExpectHas.h"
+#include "support/Refusal.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_rawlog_writer {
@@ -135,14 +136,11 @@ TEST(RawlogWriter, ReportsAFullDisk) {
   const rlimit small{20000, before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
   int written = 0;
-  std::string error;
-  try {
+  const std::string error = tests::messageOf([&] {
     RawlogWriter writer(folder / "s.rawlog");
     for (; written < 1000; ++written) writer.write(samples::observation());
     writer.commit();
-  } catch (const Error& e) {
-    error = e.what();
-  }
+  });
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_HAS(error, "s.rawlog");

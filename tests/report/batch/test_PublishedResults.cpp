@@ -4,6 +4,7 @@
 
 #include <polemcl/core/common/Types.h>
 #include "report/batch/PublishedResults.h"
+#include "support/Refusal.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::report::test_published_results {
@@ -28,12 +29,7 @@ TEST(PublishedResults, RefusesTablesThatAreDamaged) {
   const testing_apps::TempFolder folder;
   const auto refusal = [&](const std::string& text) {
     testing_apps::writeText(folder / "a.csv", text);
-    try {
-      readPublishedSessions(folder / "a.csv");
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("no error");
+    return tests::messageOf([&] { readPublishedSessions(folder / "a.csv"); });
   };
   const std::string head = "system,session,f_map,pos_mean,pos_rmse,ang_mean_deg,ang_rmse_deg\n";
   EXPECT_EQ(refusal(head + "A,s,,1,2,3,4\n"), "no error");

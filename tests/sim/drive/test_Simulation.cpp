@@ -6,7 +6,7 @@
 #include <polemcl/core/common/Types.h>
 #include <polemcl/io/data/Cloud.h>
 #include "io/dataset/ScanFolder.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "sim/drive/Drive.h"
 #include "sim/drive/Simulation.h"
 #include "support/TempFolder.h"

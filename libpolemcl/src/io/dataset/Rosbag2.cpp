@@ -1,10 +1,12 @@
 #include "io/dataset/Rosbag2.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <string>
 
-#include "io/dataset/RosbagFixes.h"
 #include "io/dataset/RosbagMotions.h"
+#include "io/dataset/ScanFixes.h"
 #include "io/file/TextFile.h"
 #include "io/rosbag/Bag.h"
 #include "io/rosbag/FrameTree.h"
@@ -191,6 +193,32 @@ void noteTransforms(const Bag& bag, ScanFolder& folder) {
           "the " + std::to_string(topic.messages) +
           " messages of /tf are not read: if they hold the odometry, write it as a table in TUM "
           "format, for --odometry");
+}
+
+/// The root of the mean of the two horizontal variances; where none are stated, kAssumedFixSigma.
+double sigmaOf(const RosNavSatFix& message) {
+  const double variance = (message.covariance(0, 0) + message.covariance(1, 1)) / 2;
+  const bool isStated = message.covarianceType > 0 && std::isfinite(variance) && variance > 0;
+  return isStated ? std::sqrt(variance) : kAssumedFixSigma;
+}
+
+/// Adds the fixes of a topic, with a note. Messages without a fix are left out; without a static
+/// transform to the frame of the fixes, the antenna is taken to be at the robot.
+void addRosbagFixes(const Bag& bag, std::size_t topic, const FrameTree& frames,
+                    const std::string& robot, ScanFolder& folder) {
+  for (const BagMessage& message : bag.messages(topic)) {
+    const RosNavSatFix read = decodeNavSatFix(bag.read(message), bag.place(message));
+    if (read.status < 0) continue;
+    GnssFix fix;
+    fix.time = read.header.time;
+    fix.latitude = read.latitude;
+    fix.longitude = read.longitude;
+    fix.sigma = sigmaOf(read);
+    if (const auto T_robot_antenna = frames.find(robot, read.header.frame))
+      fix.antenna_robot = T_robot_antenna->translation().head<2>();
+    takeFix(fix, folder);
+  }
+  finishFixes(bag.topics()[topic].name, folder);
 }
 
 /// Adds the positions from satellites. They are optional: of several topics none is taken, with a

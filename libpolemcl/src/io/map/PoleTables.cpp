@@ -1,11 +1,14 @@
 #include "io/map/PoleTables.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/common/Transform.h"
+#include "io/file/AtomicFile.h"
 #include "io/file/CsvTable.h"
 #include "io/file/Date.h"
 #include "io/file/Npz.h"
-#include "io/map/PolePositions.h"
+#include "io/file/TextFile.h"
 
 namespace polemcl::io {
 namespace {
@@ -70,23 +73,83 @@ PoleHistory readHistoryColumn(const CsvTable& table, std::size_t row) {
   return history;
 }
 
-/// The radii of the poles, if the file has them.
-std::vector<double> readRadii(const std::filesystem::path& file) {
+/// The array of the poles, one row per pole. \param name Set to that of the array.
+NumberArray polesIn(const std::filesystem::path& file, std::string& name) {
   const NpzFile npz(file);
-  if (npz.contains("poleparams") || !npz.contains("polemeans")) return {};
-  const NumberArray array = npz.array("polemeans");
-  std::vector<double> radii;
-  if (array.shape.size() != 2 || array.shape[1] != 3) return radii;
-  for (std::size_t row = 0; row < array.shape[0]; ++row) {
-    radii.push_back(array.values[3 * row + 2]);
-    if (!(radii.back() >= 0 && std::isfinite(radii.back())))
-      throw Error(file.string() + ": array polemeans, row " + std::to_string(row) +
-                  " (counted from 0): the third number is not a radius");
+  for (const char* known : {"polemeans", "poleparams"}) {
+    if (npz.contains(known)) name = known;
   }
-  return radii;
+  if (name.empty()) {
+    const std::string found = joined(npz.names());
+    throw Error(file.string() + ": no array poleparams or polemeans in it (found: " +
+                (found.empty() ? "none" : found) + ")");
+  }
+  NumberArray array = npz.array(name);
+  if (array.shape.size() != 2 || array.shape[1] < 2) {
+    std::string shape;
+    for (const std::size_t size : array.shape)
+      shape += (shape.empty() ? "" : "x") + std::to_string(size);
+    throw Error(file.string() + ": array " + name + " of shape (" + shape +
+                "); one row per pole with x and y first expected");
+  }
+  return array;
+}
+
+/// \param withRadii Those of `polemeans` are read and checked as well.
+std::vector<MapPole> readNpz(const std::filesystem::path& file, bool withRadii) {
+  std::string name;
+  const NumberArray array = polesIn(file, name);
+  const bool hasRadii = withRadii && name == "polemeans" && array.shape[1] == 3;
+  std::vector<MapPole> poles;
+  for (std::size_t row = 0; row < array.shape[0]; ++row) {
+    const double* values = array.values.data() + row * array.shape[1];
+    const auto refuse = [&](const char* what) {
+      throw Error(file.string() + ": array " + name + ", row " + std::to_string(row) +
+                  " (counted from 0)" + what);
+    };
+    if (!std::isfinite(values[0]) || !std::isfinite(values[1])) refuse(" is not finite");
+    poles.push_back(poleAt(values[0], values[1]));
+    if (!hasRadii) continue;
+    poles.back().radius = values[2];
+    if (!(values[2] >= 0 && std::isfinite(values[2]))) refuse(": the third number is not a radius");
+  }
+  return poles;
+}
+
+std::vector<Eigen::Vector2d> readCsvPositions(const std::filesystem::path& file) {
+  const CsvTable table(file);
+  const std::size_t x = table.column("x"), y = table.column("y");
+  std::vector<Eigen::Vector2d> positions;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    positions.emplace_back(table.number(row, x), table.number(row, y));
+  return positions;
 }
 
 }  // namespace
+
+void writePoleCsv(const std::filesystem::path& file, const std::vector<MapPole>& poles,
+                  const std::vector<PoleHistory>& histories) {
+  AtomicFile output(file);
+  output.stream() << "x,y,radius,count,bottom,top,confidence,cov_xx,cov_xy,cov_yy"
+                  << (histories.empty() ? "\n" : ",existence,seen,missed,first_seen,last_seen\n");
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    const MapPole& p = poles[i];
+    output.stream() << fixed(p.x, 6) << ',' << fixed(p.y, 6) << ',' << fixed(p.radius, 6) << ','
+                    << std::to_string(p.count);
+    for (const double value : {p.bottom, p.top, p.confidence, p.covariance(0, 0),
+                               p.covariance(0, 1), p.covariance(1, 1)}) {
+      output.stream() << ',' << significant(value, 9);
+    }
+    if (!histories.empty()) {
+      const PoleHistory& h = histories.at(i);
+      output.stream() << ',' << significant(h.existence, 6) << ',' << std::to_string(h.seen) << ','
+                      << std::to_string(h.missed) << ',' << dateText(h.firstSeen) << ','
+                      << dateText(h.lastSeen);
+    }
+    output.stream() << '\n';
+  }
+  output.commit();
+}
 
 PoleMapData readPoleCsv(const std::filesystem::path& file) {
   const CsvTable table(file);
@@ -102,13 +165,19 @@ PoleMapData readPoleCsv(const std::filesystem::path& file) {
 
 PoleMapData readPoleNpz(const std::filesystem::path& file) {
   PoleMapData map;
-  const auto radii = readRadii(file);
-  for (const Eigen::Vector2d& at : readPolePositions(file)) {
-    MapPole pole = poleAt(at.x(), at.y());
-    if (!radii.empty()) pole.radius = radii.at(map.poles.size());
-    map.poles.push_back(pole);
-  }
+  map.poles = readNpz(file, true);
   return map;
+}
+
+std::vector<Eigen::Vector2d> readPolePositions(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (ending == ".csv") return readCsvPositions(file);
+  if (ending == ".npz") return centresOf(readNpz(file, false));
+  if (ending == ".polemap") return centresOf(readPoleMap(file).poles);
+  throw Error(file.string() + ": unknown kind of file '" + ending +
+              "'; allowed: .polemap, .csv (columns x, y), .npz (poleparams or polemeans)");
 }
 
 }  // namespace polemcl::io

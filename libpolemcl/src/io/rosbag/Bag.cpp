@@ -7,8 +7,6 @@
 #include "io/file/Decompress.h"
 #include "io/file/TextFile.h"
 #include "io/rosbag/BagFiles.h"
-#include "io/rosbag/McapStorage.h"
-#include "io/rosbag/SqliteStorage.h"
 
 namespace polemcl::io {
 

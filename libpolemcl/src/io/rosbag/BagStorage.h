@@ -3,6 +3,7 @@
 /// \brief What a bag of ROS 2 asks of one of its files, whatever its format.
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,5 +36,18 @@ class BagStorage {
   /// \brief What its user should know: a recording that was cut short. Empty if there is nothing.
   virtual std::string note() const { return {}; }
 };
+
+/// \brief Opens a `.db3` file; it is only read. \throws Error when it is no bag in SQLite.
+std::unique_ptr<BagStorage> openSqliteStorage(const std::filesystem::path& file);
+
+/// \brief Opens an `.mcap` file; it is only read.
+///
+/// Chunks stay compressed until one of their messages is read, unless they have no index. Where
+/// the end of the file is missing, what is whole before it is there, with a note.
+/// \throws Error when it is damaged.
+std::unique_ptr<BagStorage> openMcapStorage(const std::filesystem::path& file);
+
+/// \brief Limit of a decompressed chunk or message, bytes.
+constexpr std::uint64_t kMostInBag = 1 << 30;
 
 }  // namespace polemcl::io

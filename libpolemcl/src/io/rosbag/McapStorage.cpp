@@ -1,5 +1,3 @@
-#include "io/rosbag/McapStorage.h"
-
 #include <zlib.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <polemcl/core/common/Types.h>
 #include "io/file/Bytes.h"
 #include "io/file/Decompress.h"
+#include "io/rosbag/BagStorage.h"
 #include "io/rosbag/McapFile.h"
 
 namespace polemcl::io {

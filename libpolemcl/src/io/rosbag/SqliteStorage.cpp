@@ -1,11 +1,10 @@
-#include "io/rosbag/SqliteStorage.h"
-
 #include <sqlite3.h>
 
 #include <algorithm>
 #include <functional>
 
 #include <polemcl/core/common/Types.h>
+#include "io/rosbag/BagStorage.h"
 
 namespace polemcl::io {
 

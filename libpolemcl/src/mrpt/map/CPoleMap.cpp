@@ -13,7 +13,7 @@
 #include "core/mapping/IncrementalMerge.h"
 #include "io/file/ReadLimits.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
 #include "mrpt/common/BoundedRead.h"
 #include "mrpt/drawing/SceneParts.h"
 

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
 
 #include <polemcl/core/common/Types.h>
@@ -18,6 +19,13 @@
 namespace polemcl {
 
 namespace {
+
+constexpr std::uint64_t kPointBytes = 12;  ///< a point has at least x, y and z
+
+/// E.g. "mrpt::maps::CPointsMapXYZI", or "CSimplePointsMap" of old files.
+bool isPointsMap(std::string_view name) {
+  return name.find("PointsMap") != std::string_view::npos;
+}
 
 void refuseZstd(const std::string& path) {
   std::array<char, 4> head{};
@@ -87,6 +95,30 @@ bool GzReadStream::atCleanEnd() {
   return !refill() && !m_cutShort;
 }
 
+/// The count of points, if this block that was read is one. MRPT's point maps allocate memory for
+/// the count in the file before they read a point. It follows the header of the object: a byte with
+/// the length of the class name, the name, a byte with the version. MRPT reads each of them
+/// separately, so the count can be recognized.
+std::optional<std::uint32_t> GzReadStream::pointsIn(const void* piece, std::size_t size) {
+  const auto* bytes = static_cast<const unsigned char*>(piece);
+  const HeaderPart expected = m_next;
+  m_next = HeaderPart::length;
+  if (expected == HeaderPart::name && size == m_nameLength &&
+      isPointsMap({static_cast<const char*>(piece), size})) {
+    m_next = HeaderPart::version;
+  } else if (expected == HeaderPart::version && size == 1) {
+    m_next = HeaderPart::count;
+  } else if (expected == HeaderPart::count && size == 4) {
+    std::uint32_t count = 0;
+    std::memcpy(&count, bytes, sizeof count);
+    return count;
+  } else if (size == 1 && (bytes[0] & 0x80) != 0) {
+    m_nameLength = bytes[0] & 0x7f;
+    m_next = HeaderPart::name;
+  }
+  return std::nullopt;
+}
+
 std::size_t GzReadStream::Read(void* buffer, std::size_t count) {
   auto* out = static_cast<unsigned char*>(buffer);
   std::size_t done = 0;
@@ -102,8 +134,8 @@ std::size_t GzReadStream::Read(void* buffer, std::size_t count) {
     done += piece;
   }
   if (m_follow.count() > 0) return done;
-  const auto points = m_points.see(buffer, count);
-  if (points && *points > mostLeft() / PointCountGuard::kPointBytes) {
+  const auto points = pointsIn(buffer, count);
+  if (points && *points > mostLeft() / kPointBytes) {
     m_cutShort = true;
     throw std::runtime_error("the data ends before its " + std::to_string(*points) + " points");
   }

@@ -8,10 +8,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
-
-#include "mrpt/rawlog/PointCountGuard.h"
 
 struct gzFile_s;
 
@@ -53,12 +52,17 @@ class GzReadStream : public mrpt::io::CStream {
   bool refill();
   int readPiece(int& code);
   std::uint64_t mostLeft() const;
+  std::optional<std::uint32_t> pointsIn(const void* piece, std::size_t size);
+
+  /// What MRPT reads next of the header of a point map.
+  enum class HeaderPart { length, name, version, count };
   std::string m_path;
   std::chrono::duration<double> m_follow;
   gzFile_s* m_file = nullptr;
   std::vector<unsigned char> m_buffer = std::vector<unsigned char>(1 << 18);
   std::size_t m_begin = 0, m_end = 0;  ///< part of the buffer that is not consumed yet
-  PointCountGuard m_points;
+  HeaderPart m_next = HeaderPart::length;
+  std::size_t m_nameLength = 0;
   std::uint64_t m_position = 0, m_fileSize = 0;
   bool m_cutShort = false, m_endsEarly = false;
   std::atomic<bool> m_isStopped{false};

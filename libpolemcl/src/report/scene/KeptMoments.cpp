@@ -69,7 +69,6 @@ void KeptMoments::add(LiveMoment moment) {
   if (moment.estimate) pose = moment.estimate->mean;
   m_way.add(pose, moment.relocalized, moment.health.state);
   m_trueWay.add(moment.truth, false);
-  m_haveTruth = m_haveTruth || moment.truth;
   m_errors.push_back(static_cast<float>(positionError(moment).value_or(-1)));
   m_kept.push_back(kept(moment));
   if (m_kept.size() > mostScans) m_kept.pop_front();

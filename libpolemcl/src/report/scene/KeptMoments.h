@@ -29,8 +29,6 @@ class KeptMoments {
   LiveMoment at(std::size_t scan) const;
   /// \brief Of the position, m, at each scan so far; negative where it is not known.
   const std::vector<float>& errors() const { return m_errors; }
-  /// \brief A moment had a true pose.
-  bool haveTruth() const { return m_haveTruth; }
 
  private:
   struct Pole {
@@ -59,7 +57,6 @@ class KeptMoments {
   std::deque<Kept> m_kept;  ///< the last one is the newest
   std::vector<float> m_errors;
   Way m_way, m_trueWay;
-  bool m_haveTruth = false;
 };
 
 }  // namespace polemcl::report
