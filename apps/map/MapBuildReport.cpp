@@ -13,14 +13,28 @@ namespace polemcl::apps {
 namespace {
 
 constexpr double kManyTwins = 0.25;  ///< share of the poles
+constexpr double kManyUntold = 0.1;  ///< share of the motions
 
 /// Motions of the odometry that the poles contradict; empty when there are none.
 std::string odometryDoubt(const FilledMotions& filled) {
   if (filled.contradicted == 0) return {};
-  return "the poles contradict " + std::to_string(filled.contradicted) +
-         (filled.contradicted == 1 ? " motion" : " motions") + " of its odometry, the first at " +
+  return "the poles contradict " + std::to_string(filled.contradicted) + " of the " +
+         std::to_string(filled.motions) + " motions of its odometry, the first at " +
          io::fixed(filled.firstContradicted, 3) +
-         " s, and told the way there; check whether the odometry slips or starts anew";
+         (filled.refuted ? " s: none of it is used, and the poles told the whole way; check frame "
+                           "(x ahead, y to the left), metres, radians, and quaternions as x y z w"
+                         : " s, and told the way there; check whether the odometry slips or starts "
+                           "anew");
+}
+
+/// Motions that nothing tells; empty when these are few.
+std::string coastingDoubt(const FilledMotions& filled) {
+  if (static_cast<double>(filled.coasted) <= kManyUntold * static_cast<double>(filled.motions))
+    return {};
+  return "neither odometry nor poles tell " + std::to_string(filled.coasted) + " of its " +
+         std::to_string(filled.motions) +
+         " motions: the path is a guess there; check whether its scans are all of one drive, in "
+         "their order, and have the right times";
 }
 
 /// Positions from satellites of which many do not fit the path; empty otherwise.
@@ -138,7 +152,8 @@ void tellDrive(std::ostream& out, const MapBuildSummary& summary, std::size_t i,
   if (const std::size_t missing = filled.byPoles + filled.coasted; missing > 0)
     out << drive << ": no odometry leads to " << missing << " scans; the poles told the way to "
         << filled.byPoles
-        << (filled.coasted > 0 ? ", the others go on as before: look there, the first at " +
+        << (filled.coasted > 0 ? ", " + std::to_string(filled.coasted) +
+                                     " go on as before: look there, the first at " +
                                      io::fixed(filled.firstCoasted, 3) + " s\n"
                                : "\n");
   if (filled.all) return;
@@ -205,8 +220,10 @@ std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBui
   const auto doubt = [&](std::size_t drive, const std::string& text) {
     if (!text.empty()) warnings.push_back(job.inputs[drive].filename().string() + ": " + text);
   };
-  for (std::size_t i = 0; i < summary.filled.size(); ++i)
+  for (std::size_t i = 0; i < summary.filled.size(); ++i) {
     doubt(i, odometryDoubt(summary.filled[i]));
+    doubt(i, coastingDoubt(summary.filled[i]));
+  }
   for (std::size_t i = 0; summary.mapped && i < summary.mapped->fixes.size(); ++i)
     doubt(i, fixesDoubt(summary.mapped->fixes[i]));
   for (std::size_t i = 0; i < summary.motions.size(); ++i)

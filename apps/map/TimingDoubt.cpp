@@ -10,6 +10,7 @@ namespace polemcl::apps {
 namespace {
 
 constexpr double kLeastOffset = 0.02;  ///< s; what is found without one is up to 0.01 s
+constexpr double kMostOffset = 0.145;  ///< s; the search ends here
 
 TimedScan timedScan(const SessionScan& scan) {
   TimedScan result{scan.time, scan.pose_map_robot, {}};
@@ -44,14 +45,21 @@ std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped
     return "the clocks of scans and of odometry or true poses differ: its poles fit better with "
            "[sensor] "
            "clock_offset_s = " +
-           io::fixed(timing.clock + dead.timing.clock, 2) + errors(dead.clockSignificance);
+           io::fixed(timing.clock + dead.timing.clock, 2) + errors(dead.clockSignificance) +
+           (std::abs(dead.timing.clock) < kMostOffset
+                ? ""
+                : ", or one still farther off: set it and build again");
   const TimingEstimate& found = dead.timing.known() ? dead : mapped;
   if (!found.timing.known()) return {};
-  return "its scans do not look corrected for the motion during a turn" +
-         errors(found.turnSignificance) +
-         ": of an upright LiDAR, [sensor] turn = " + name(found.timing.turn) +
-         " and cut_deg = " + io::fixed(found.timing.cut / degree, 0) +
-         " fit best; pole-extract --inspect tells them, unless it finds no beams";
+  const std::string doubt = "its scans do not look corrected for the motion during a turn" +
+                            errors(found.turnSignificance) + ": ";
+  const std::string corrected = "check turn, cut_deg, turn_s and the times of the scans";
+  if (timing.known()) return doubt + corrected;
+  return doubt + "if nothing corrected them, of an upright LiDAR [sensor] turn = " +
+         name(found.timing.turn) + " and cut_deg = " + io::fixed(found.timing.cut / degree, 0) +
+         " fit best (pole-extract --inspect tells them, unless it finds no beams); if the rawlog "
+         "states a turn, " +
+         corrected;
 }
 
 /// Clocks are searched only on a suspicion: it takes much longer.

@@ -100,7 +100,8 @@ TEST_F(MotionEvalTest, EndsWithAVerdict) {
   expectText("agree with these poses (in 3 of 3", "12");  // as pole-map, whatever --every
   writeTruth(13, 0.9);
   expectText(
-      "\nthe poles contradict these poses: truth of another drive, wrong time or wrong scan timing "
+      "\nthe poles contradict these poses: truth of another drive or in another frame, wrong time "
+      "or wrong scan timing "
       "(in 3 of 3 stretches)\n");
   writeTruth(13, 5);  // 6.4 m too far: farther off than pairs are looked for around the true motion
   expectText("(in 3 of 3 stretches)\n");

@@ -93,6 +93,29 @@ double certainTo(const std::string& report) {
 
 }  // namespace
 
+/// Five scans without poles in a drive without odometry: 0.1 s apart, so the motion goes on over
+/// them.
+TEST_F(DriveDoubts, ManyMotionsThatNothingTellsGiveAWarning) {
+  writeStreet(folder / "in", 30);
+  fs::remove(folder / "in" / "odometry.txt");
+  std::string times;
+  for (int i = 0; i < 30; ++i) times += io::fixed(50 + 0.1 * i, 3) + '\n';
+  writeText(folder / "in" / "times.txt", times);
+  import("in");
+  const auto whole = build();
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  const float ground[] = {10, 0, -1.7F, 0};
+  EXPECT_EQ(whole.err.find("neither odometry nor poles"), std::string::npos) << whole.err;
+  for (std::size_t i = 10; i < 15; ++i)
+    writeText(folder / "in" / "velodyne" / scanName(i),
+              {reinterpret_cast<const char*>(ground), 16});
+  import("in");
+  const auto blind = build();
+  ASSERT_EQ(blind.code, 0) << blind.err;
+  EXPECT_HAS(blind.err, "warning: in.rawlog: neither odometry nor poles tell 5 of its 29 motions");
+  EXPECT_HAS(blind.out, "5 go on as before: look there, the first at 51.000 s");
+}
+
 TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
   writeStreet(folder / "in", 30);
   import("in");
@@ -109,9 +132,9 @@ TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
   const auto slipped = build();
   ASSERT_EQ(slipped.code, 0) << slipped.err;
   EXPECT_HAS(slipped.err,
-             "warning: in.rawlog: the poles contradict 1 motion of its odometry, the "
+             "warning: in.rawlog: the poles contradict 1 of the 29 motions of its odometry, the "
              "first at 53.000 s");
-  EXPECT_HAS(info().at("warnings"), "in.rawlog: the poles contradict 1 motion");
+  EXPECT_HAS(info().at("warnings"), "in.rawlog: the poles contradict 1 of");
   EXPECT_EQ(slipped.out.find("no odometry leads"), std::string::npos) << slipped.out;
   expectRightPlaces();
 }

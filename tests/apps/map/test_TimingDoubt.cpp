@@ -60,6 +60,10 @@ TEST(TimingDoubt, SeesScansThatWereNotCorrected) {
   const std::string doubt = timingDoubt(found, kNothing, {});
   EXPECT_HAS(doubt, "not look corrected");
   EXPECT_HAS(doubt, "turn = clockwise and cut_deg = 180 ");
+  // What is left after a correction is no turn to set.
+  const std::string after = timingDoubt(found, kNothing, {Turn::clockwise, 0.2, M_PI, 0.5});
+  EXPECT_HAS(after, "check turn, cut_deg, turn_s and the times of the scans");
+  EXPECT_EQ(after.find("fit best"), std::string::npos);
 }
 
 TEST(TimingDoubt, OfTruePosesToo) {
@@ -89,6 +93,10 @@ TEST(TimingDoubt, AddsTheOffsetToThatOfTheSettings) {
   set.clock = -0.02;
   EXPECT_HAS(timingDoubt(with(Turn::compensated, 0.05, 5.3), kNothing, set),
              "clock_offset_s = 0.03 (5.3 standard errors)");
+  EXPECT_HAS(timingDoubt(with(Turn::compensated, 0.15, 9), kNothing, {}),
+             "0.15 (9.0 standard errors), or one still farther off");
+  EXPECT_EQ(timingDoubt(with(Turn::compensated, 0.14, 9), kNothing, {}).find("farther"),
+            std::string::npos);
 }
 
 TEST(TimingDoubt, OfAdjustedPosesOnlyTheTurnCounts) {

@@ -165,6 +165,38 @@ TEST_F(PoleMotionsTest, ASlipIsNotBelievedWhereThePolesSayNothing) {
   EXPECT_GT(scans[21].motion->covariance(0, 0), scans[18].motion->covariance(0, 0));
 }
 
+/// Of another vehicle, turned by 90 degrees, backwards, without heading, or 1.5 times too long.
+TEST_F(PoleMotionsTest, AnOdometryThatIsMostlyWrongIsNotUsed) {
+  const std::vector<PoleScan> right = scans;
+  const auto spoil = [](Pose2D& motion, int how) {
+    if (how == 0) motion = {-motion.y, motion.x, motion.yaw};
+    if (how == 1) motion = relative(motion, Pose2D());
+    if (how == 2) motion.yaw += 0.2;
+    if (how == 3) motion.x *= 1.5;
+  };
+  for (int how = 0; how < 4; ++how) {
+    SCOPED_TRACE(how);
+    scans = right;
+    for (std::size_t i = 1; i < scans.size(); ++i) spoil(scans[i].motion->mean, how);
+    const FilledMotions filled = fillMotions(scans);
+    EXPECT_TRUE(filled.refuted);
+    EXPECT_TRUE(filled.all);
+    EXPECT_EQ(filled.motions, scans.size() - 1);
+    EXPECT_GT(3 * filled.contradicted, filled.motions);
+    EXPECT_LT(worst(1, scans.size()), 0.25);
+  }
+}
+
+/// The poles cannot tell the whole way: what is told of it stays.
+TEST_F(PoleMotionsTest, AnOdometryThatNothingReplacesStays) {
+  for (std::size_t i = 1; i < scans.size(); ++i) scans[i].motion->mean.x *= 1.5;
+  blind(40, 65);
+  const FilledMotions filled = fillMotions(scans);
+  EXPECT_FALSE(filled.refuted);
+  EXPECT_FALSE(filled.all);
+  EXPECT_NE(scans[62].motion->mean.x, 0);
+}
+
 /// Errors that an odometry has, and what few poles contradict, are not theirs to judge.
 TEST_F(PoleMotionsTest, APoorOdometryStays) {
   const std::vector<PoleScan> right = scans;

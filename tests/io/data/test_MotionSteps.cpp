@@ -37,9 +37,13 @@ TEST(MotionSteps, TurnsMoveTheEnd) {
   EXPECT_NEAR(covariance(1, 2), 5 * 0.01, 1e-12);
 }
 
-TEST(MotionSteps, DefaultsAreSharesOfTheMotion) {
-  EXPECT_TRUE(proportionalCovariance({2, -1, 0.5}, 0.1)
-                  .isApprox(Eigen::Matrix3d(Eigen::Vector3d(0.04, 0.01, 0.0025).asDiagonal())));
+/// An odometry errs across its way too, and its heading on straight streets.
+TEST(MotionSteps, DefaultsAreSharesOfWayAndTurn) {
+  const double perMetre = M_PI / 180;
+  EXPECT_TRUE(
+      assumedCovariance({4, -3, 0.5}, 0.1)
+          .isApprox(Eigen::Matrix3d(
+              Eigen::Vector3d(0.25, 0.25, 0.0025 + 0.25 * perMetre * perMetre).asDiagonal())));
   EXPECT_EQ(floorCovariance().diagonal(), Eigen::Vector3d(1e-6, 1e-6, 1e-8));
 }
 

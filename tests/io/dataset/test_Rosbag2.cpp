@@ -212,7 +212,7 @@ TEST_F(Rosbag2Test, WithoutCovariancesTwoPercent) {
     expectNote(folder, "/odom: 4 messages, 4 without a covariance");
     const PoseWithCovariance& motion = *folder.scans[2].motion;
     EXPECT_TRUE(
-        motion.covariance.isApprox(proportionalCovariance(motion.mean, 0.02) + floorCovariance()));
+        motion.covariance.isApprox(assumedCovariance(motion.mean, 0.02) + floorCovariance()));
   }
 }
 

@@ -232,6 +232,10 @@ TEST_F(ScanFolderTest, FoldersOfPcdFiles) {
   EXPECT_FALSE(bare.scans[0].T_map_robot);
   ASSERT_EQ(bare.notes.size(), 1u);
   EXPECT_HAS(bare.notes[0], "0.1 s");
+  EXPECT_EQ(bare.notes[0].find("missing"), std::string::npos);
+  write("7.pcd", "#");
+  EXPECT_HAS(readPcdFolder(m_folder, kIdentity).notes[0], "first between 2.pcd and 7.pcd");
+  fs::remove(path("7.pcd"));
   write("times.txt", "5\n6\n7.5\n");
   write("poses.txt", leftAt("10", "20", "3") + leftAt("11", "20", "3") + leftAt("12", "20", "3"));
   write("odometry.txt", "1 0 0 1 1 1\n1 0 0 1 1 1\n");

@@ -126,8 +126,8 @@ std::string MotionCheck::verdict() const {
     return std::string("the poles agree with ") + part + "these poses" +
            of(m_told - m_contradicting);
   }
-  return "the poles contradict these poses: truth of another drive, wrong time or wrong scan "
-         "timing" +
+  return "the poles contradict these poses: truth of another drive or in another frame, wrong "
+         "time or wrong scan timing" +
          of(m_contradicting);
 }
 

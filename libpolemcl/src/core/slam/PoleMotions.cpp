@@ -37,6 +37,10 @@ constexpr double kSlip = 0.3, kTurnSlip = 0.05, kSlipShare = 0.1;
 constexpr double kStated = 3, kMostStated = 0.5, kMostTurnStated = 0.2;  // sigmas, m, rad
 /// Share of these limits until odometry and poles agree again over a whole window:
 constexpr double kDoubted = 1.0 / 3;
+/// An odometry of which the poles tell a greater share anew, but not only a few motions, is of
+/// another vehicle, in another frame or in other units.
+constexpr double kMostRefuted = 0.3;
+constexpr int kFewMotions = 10;
 
 /// Poles as seen at the time of their scan.
 std::vector<PoleDetection> stillPoles(const PoleScan& scan, const Velocity& velocity) {
@@ -58,8 +62,8 @@ class MotionFiller {
       if (i > 0 && !isTold) fillMissing(i);
       m_poles.push_back(stillPoles(m_scans[i], m_velocity.value_or(Velocity())));
     }
-    m_filled.all =
-        m_filled.byPoles + m_filled.coasted + m_filled.contradicted + 1 >= m_scans.size();
+    m_filled.motions = m_scans.empty() ? 0 : m_scans.size() - 1;
+    m_filled.all = m_filled.byPoles + m_filled.coasted + m_filled.contradicted >= m_filled.motions;
     return m_filled;
   }
 
@@ -303,7 +307,34 @@ class MotionFiller {
 }  // namespace
 
 FilledMotions fillMotions(std::vector<PoleScan>& scans) {
-  return MotionFiller(scans).run();
+  using Motions = std::vector<std::optional<PoseWithCovariance>>;
+  const auto motions = [&] {
+    Motions result;
+    for (const PoleScan& scan : scans) result.push_back(scan.motion);
+    return result;
+  };
+  const auto set = [&](const Motions& from) {
+    for (std::size_t i = 0; i < scans.size(); ++i) scans[i].motion = from[i];
+  };
+  const Motions told = motions();
+  const auto count = static_cast<double>(std::count_if(
+      told.begin(), told.end(), [](const auto& motion) { return motion.has_value(); }));
+  FilledMotions filled = MotionFiller(scans).run();
+  if (static_cast<double>(filled.contradicted) <=
+      std::max<double>(kMostRefuted * count, kFewMotions))
+    return filled;
+  const Motions mended = motions();
+  try {
+    set(Motions(scans.size()));
+    FilledMotions alone = MotionFiller(scans).run();
+    alone.refuted = true;
+    alone.contradicted = filled.contradicted;
+    alone.firstContradicted = filled.firstContradicted;
+    return alone;
+  } catch (const Error&) {  // too few poles in some place
+    set(mended);
+    return filled;
+  }
 }
 
 }  // namespace polemcl

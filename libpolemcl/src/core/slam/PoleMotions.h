@@ -11,12 +11,14 @@ namespace polemcl {
 
 /// \brief What fillMotions() did.
 struct FilledMotions {
+  std::size_t motions = 0;       ///< in all
   std::size_t byPoles = 0;       ///< missing motions by the poles
   std::size_t coasted = 0;       ///< missing ones that go on as before, where too few poles told
   double firstCoasted = 0;       ///< time of the scan that the first of these leads to, s
   std::size_t contradicted = 0;  ///< motions of the odometry that were told anew
   double firstContradicted = 0;  ///< time of the scan that the first of these leads to, s
   bool all = false;              ///< no motion is that of an odometry
+  bool refuted = false;          ///< too much of the odometry was contradicted: none of it is used
 };
 
 /// \brief Fills in each motion that is missing after the first scan.
@@ -31,7 +33,9 @@ struct FilledMotions {
 /// second, are told by the poles: a wheel slipped, or the odometry started anew. Errors up to
 /// 0.3 m + 10 % and 0.05 rad + 10 % in that time stay (a third, until both agree again over a
 /// second), and so do motions that fewer than four common poles contradict. Between such motions,
-/// those of which the poles say nothing are told anew if they are not the motion before.
+/// those of which the poles say nothing are told anew if they are not the motion before. Where more
+/// than 30 % of its motions are told anew, the odometry is not used at all, if the poles can tell
+/// the whole way.
 /// \throws Error naming the scan where too few poles told the motion over 2 s.
 FilledMotions fillMotions(std::vector<PoleScan>& scans);
 

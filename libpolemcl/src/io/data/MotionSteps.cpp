@@ -1,6 +1,9 @@
 #include "io/data/MotionSteps.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "core/common/Angles.h"
 
 namespace polemcl::io {
 namespace {
@@ -36,9 +39,11 @@ std::optional<Eigen::Matrix3d> MotionSteps::covarianceBetween(double begin, doub
   return sum.covariance * ((end - begin) / covered);
 }
 
-Eigen::Matrix3d proportionalCovariance(const Pose2D& motion, double share) {
-  const Eigen::Vector3d sigma = share * Eigen::Vector3d(motion.x, motion.y, motion.yaw);
-  return sigma.cwiseAbs2().asDiagonal();
+Eigen::Matrix3d assumedCovariance(const Pose2D& motion, double share) {
+  const double way = std::hypot(motion.x, motion.y);
+  const Eigen::Array3d turning(0, 0, way * degree);
+  const Eigen::Array3d moving(way, way, motion.yaw);
+  return (share * share * (moving.square() + turning.square())).matrix().asDiagonal();
 }
 
 Eigen::Matrix3d floorCovariance() {

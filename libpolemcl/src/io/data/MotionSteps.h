@@ -34,8 +34,10 @@ class MotionSteps {
   std::vector<Step> m_steps;
 };
 
-/// \brief Independent errors with a standard deviation of this share of each component.
-Eigen::Matrix3d proportionalCovariance(const Pose2D& motion, double share);
+/// \brief Of a motion whose odometry states none. Standard deviations: this share of the way, along
+/// it and across; of the heading this share of the turn, and of a degree for each metre. Own
+/// choice.
+Eigen::Matrix3d assumedCovariance(const Pose2D& motion, double share);
 
 /// \brief The variances of motionFloorMetres and motionFloorRadians.
 Eigen::Matrix3d floorCovariance();

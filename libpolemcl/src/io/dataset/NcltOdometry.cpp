@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kRelativeNoise = 0.05;  ///< per component, without covariances; own choice
+constexpr double kRelativeNoise = 0.05;  ///< where the file states none, see assumedCovariance()
 
 /// Covariance of x, y and heading, from the 21 numbers of an upper triangle at `values`.
 Eigen::Matrix3d planarCovariance(const double* values) {
@@ -154,7 +154,7 @@ PoseWithCovariance NcltOdometry::motion(const Eigen::Isometry3d& T_begin_end, do
     const Eigen::Matrix3d change = planeChange(T_robot_body);
     motion.covariance = change * *covariance * change.transpose();
   } else {
-    motion.covariance = proportionalCovariance(motion.mean, kRelativeNoise);
+    motion.covariance = assumedCovariance(motion.mean, kRelativeNoise);
   }
   motion.covariance += floorCovariance();
   return motion;

@@ -150,7 +150,7 @@ PoseWithCovariance motionBetween(const MeasuredTrack& odometry,
   PoseWithCovariance motion;
   motion.mean = motionOf(odometry, interval);
   const auto stated = odometry.steps.covarianceBetween(interval.begin, interval.end);
-  motion.covariance = stated.value_or(proportionalCovariance(motion.mean, kDefaultMotionNoise));
+  motion.covariance = stated.value_or(assumedCovariance(motion.mean, kDefaultMotionNoise));
   if (imu && !hasGap(*imu, interval)) {
     const double yaw = motionOf(*imu, interval).yaw;
     // On an arc the chord points along the mean of both headings.
@@ -159,7 +159,7 @@ PoseWithCovariance motionBetween(const MeasuredTrack& odometry,
     motion.mean.yaw = yaw;
     const auto ofGyro = imu->steps.covarianceBetween(interval.begin, interval.end);
     const Eigen::Matrix3d byYaw =
-        ofGyro.value_or(proportionalCovariance({0, 0, yaw}, kDefaultMotionNoise));
+        ofGyro.value_or(assumedCovariance({0, 0, yaw}, kDefaultMotionNoise));
     motion.covariance.row(2).setZero();
     motion.covariance.col(2).setZero();
     motion.covariance(2, 2) = byYaw(2, 2);

@@ -30,6 +30,18 @@ Scans listScans(const fs::path& folder, const std::string& ending, const std::st
   return scans;
 }
 
+/// What the numbers of the scans say against equal times; empty if they are in turn.
+std::string gapOfNumbers(const Scans& scans) {
+  for (std::size_t i = 1; i < scans.files.size(); ++i) {
+    const auto before = fileNumber(scans.files[i - 1]), number = fileNumber(scans.files[i]);
+    if (before && number && *number != *before + 1)
+      return ", though numbers are missing, first between " +
+             scans.files[i - 1].filename().string() + " and " + scans.files[i].filename().string() +
+             ": wrong times spoil the correction of moving scans and the poles' motion";
+  }
+  return {};
+}
+
 /// Checks for one row per scan, or per scan after the first. Throws on fewer rows. More rows give a
 /// note, or an error if the assignment is ambiguous.
 void checkCount(const fs::path& file, const std::string& what, std::size_t got,
@@ -136,7 +148,8 @@ ScanFolder readPcdFolder(const fs::path& folder, const Eigen::Isometry3d& T_robo
     for (std::size_t i = 0; i < result.scans.size(); ++i)
       result.scans[i].time = kNominalPeriod * static_cast<double>(i);
     result.nominalTimes = true;
-    result.notes.push_back("no times.txt: scans are assumed to be 0.1 s apart");
+    result.notes.push_back("no times.txt: scans are assumed to be 0.1 s apart" +
+                           gapOfNumbers(scans));
   }
   readMotions(folder, T_robot_sensor, scans, result);
   return result;

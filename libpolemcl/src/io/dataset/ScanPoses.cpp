@@ -136,8 +136,7 @@ void takeTumMotions(ScanFolder& folder, const fs::path& file,
     if (!pose) continue;
     PoseWithCovariance motion;
     if (last) motion.mean = planar(last->inverse() * *pose);
-    motion.covariance =
-        proportionalCovariance(motion.mean, kDefaultMotionNoise) + floorCovariance();
+    motion.covariance = assumedCovariance(motion.mean, kDefaultMotionNoise) + floorCovariance();
     folder.scans[i].motion = motion;
     last = &*pose;
   }

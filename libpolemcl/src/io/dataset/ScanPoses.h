@@ -10,8 +10,7 @@ namespace polemcl::io {
 /// \brief Longest gap of a track that is interpolated, s: the vehicle may turn during longer gaps.
 constexpr double kTrackGap = 1.0;
 
-/// \brief Standard deviation of each component of a motion, as a share of it, where the odometry
-/// (or for the yaw the IMU) states no covariance. Own choice.
+/// \brief Share of assumedCovariance(), where the odometry (or for the yaw the IMU) states none.
 constexpr double kDefaultMotionNoise = 0.02;
 
 /// \brief Adds a note if rows of a track were ignored.
