@@ -41,9 +41,9 @@ faults() {
 }
 
 link_scans "$kilometre" "$out/drive" 1 228
-/usr/bin/python3 "$top/share/experiments/planar_motions.py" "$labels/laser_odometry.txt" drive/odometry.txt
-poles_of drive even --every 2 --offset 0
-poles_of drive odd --every 2 --offset 1
+/usr/bin/python3 "$top/share/experiments/planar_odometry.py" "$labels/laser_odometry.txt" drive/times.txt odometry.tum
+poles_of drive even --every 2 --offset 0 --odometry odometry.tum
+poles_of drive odd --every 2 --offset 1 --odometry odometry.tum
 rm -r drive
 poles_of "$data/kitti_raw_0005" wrong --odometry-noise 0.02 --seed 7
 for fault in kidnap $lasting; do

@@ -221,8 +221,9 @@ if [ -n "$kilometre" ]; then
   real kilometre-uncorrected "$kilometre" "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" \
     "--turn compensated $biased --seed 7"
   link_scans "$kilometre" "$out/laser" 1 228
-  /usr/bin/python3 "$top/share/experiments/planar_motions.py" "$data/kitti_odom_00_km/laser_odometry.txt" laser/odometry.txt
-  real kilometre-laser laser "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise"
+  /usr/bin/python3 "$top/share/experiments/planar_odometry.py" "$data/kitti_odom_00_km/laser_odometry.txt" \
+    laser/times.txt laser.tum
+  real kilometre-laser laser "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise --odometry laser.tum"
   two_halves
 fi
 if [ -n "$tracks" ]; then

@@ -52,13 +52,12 @@ part() {
 }
 
 # import DRIVE NAME FIRST LAST EVERY OFFSET: $here/NAME.rawlog and $here/NAME.tum, with $turn. Odometry is
-# the file $motions, or the true motion with noise.
+# the TUM file $motions, or the true motion with noise.
 import() {
   part "$1" "$3" "$4"
   odometry="--odometry-noise 0.02 --seed 7 --odometry-scale ${errors%,*} --odometry-yaw-deg-m ${errors#*,}"
   if [ -n "$motions" ]; then
-    cp "$motions" "$out/part/odometry.txt"
-    odometry=""
+    odometry="--odometry $motions"
   fi
   # shellcheck disable=SC2086 # several words
   "$bin/pole-import" folder --quiet --embed --input "$out/part" --output "$here/$2.rawlog" \
@@ -176,8 +175,9 @@ half_kilometre() {
     done
   done
   settings=""
-  motions=$out/laser.txt
-  /usr/bin/python3 "$top/share/experiments/planar_motions.py" "$data/kitti_odom_00_km/laser_odometry.txt" "$motions"
+  motions=$out/laser.tum
+  /usr/bin/python3 "$top/share/experiments/planar_odometry.py" "$data/kitti_odom_00_km/laser_odometry.txt" \
+    "$kilometre/times.txt" "$motions"
   drive kilometre-laser "$kilometre" "$top/config/kitti.ini" "$clockwise" "0 227 2 0" "0 227 2 1"
 }
 
