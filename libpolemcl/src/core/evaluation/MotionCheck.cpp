@@ -113,7 +113,8 @@ void MotionCheck::add(const ScanRegistration& poles, const Pose2D& truth, double
 
 std::string MotionCheck::verdict() const {
   if (m_told == 0)
-    return "the poles do not tell whether these poses are right: too few are seen twice";
+    return "the poles do not tell whether these poses are right: too few are seen twice, or the "
+           "poses are in another frame";
   const auto of = [this](std::size_t count) {
     return " (in " + std::to_string(count) + " of " + std::to_string(m_told) + " stretches)";
   };
