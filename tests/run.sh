@@ -60,7 +60,7 @@ all_tests() {
 
 sanitize() {
   build sanitize
-  # Fontconfig, which Cairo uses for texts, keeps some memory for good; MRPT loses map definitions,
+  # Fontconfig, which MRPT loads, keeps some memory for good; MRPT loses map definitions,
   # and the message of a GNSS receiver at which a rawlog is cut.
   printf 'leak:libfontconfig\nleak:TSetOfMetricMapInitializers\nleak:gnss_message::Factory\n' >"$top/build-sanitize/leaks.txt"
   # GCC 12's leak sanitizer reads wrong sizes of thread-local storage in loaded libraries, and crashes.

@@ -17,7 +17,7 @@
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/Bytes.h"
-#include "io/file/InstalledFiles.h"
+#include "io/file/Process.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
 #include "report/batch/BatchFiles.h"
@@ -29,8 +29,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using report::noFigure;
-
-constexpr const char* kPython = "/usr/bin/python3";  // the one that Debian's packages are for
 
 /// Without the sections that tell of simulation, views and numbers of runs: a batch has its own.
 std::string settingsShown(const std::string& ini) {
@@ -325,11 +323,10 @@ void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& resu
 }
 
 void writeReport(const BatchFolder& folder) {
-  const fs::path script = io::fileOfDataFolder("report.py", "report");
   try {
-    if (script.empty()) throw Error("report/report.py is not among the installed files");
-    runCommand({kPython, "-B", fs::absolute(script), "."}, folder.path(),
-               fs::absolute(folder.log("report")));
+    std::vector<std::string> command = io::pythonScript("report.py");
+    command.emplace_back(".");
+    runCommand(command, folder.path(), fs::absolute(folder.log("report")));
   } catch (const Error& error) {
     throw Error("report.html and table.tex are not written, all other results are: " +
                 std::string(error.what()));

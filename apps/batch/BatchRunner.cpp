@@ -1,16 +1,8 @@
 #include "batch/BatchRunner.h"
 
-#include <fcntl.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <condition_variable>
-#include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <mutex>
 #include <set>
@@ -21,13 +13,12 @@
 #include "batch/BatchCommands.h"
 #include "cli/Progress.h"
 #include "io/file/InstalledFiles.h"
+#include "io/file/Process.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr int s_notStarted = 127;  ///< exit code of a child that could not become its program
 
 /// Files that the commands leave beside their outputs would be found by the next attempt.
 class Staging {
@@ -49,50 +40,6 @@ void copyFiles(const std::vector<std::string>& command, const fs::path& folder) 
   std::error_code failure;
   fs::copy_file(command.at(1), folder / command.at(2), failure);
   if (failure) throw Error(command.at(1) + ": cannot be copied: " + failure.message());
-}
-
-/// The last line that a command wrote, but for the hint after wrong usage: its error.
-std::string lastLine(const fs::path& log) {
-  std::ifstream stream(log);
-  std::string line, last;
-  while (std::getline(stream, line))
-    if (!line.empty() && line.rfind("Try `", 0) != 0) last = line;
-  return last;
-}
-
-/// In the child: becomes the program, or ends. Only calls that are safe after a fork of a program
-/// with threads.
-[[noreturn]] void become(const char* program, char* const* arguments, const char* folder,
-                         const char* log, pid_t parent) {
-  ::prctl(PR_SET_PDEATHSIG,
-          SIGKILL);  // without its parent nobody waits for it
-  const int in = ::open("/dev/null", O_RDONLY);
-  const int out = ::open(log, O_WRONLY | O_CREAT | O_APPEND, 0666);
-  if (::getppid() == parent && in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
-      ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(out, STDERR_FILENO) >= 0 && ::chdir(folder) == 0)
-    ::execv(program, arguments);
-  ::_exit(s_notStarted);
-}
-
-/// Runs a program, of the project or by its path, in `folder`. \return What it ended with, as
-/// waitpid() has it.
-int spawn(const std::vector<std::string>& command, const fs::path& folder, const fs::path& log) {
-  const std::string program = (programFolder() / command.front()).string();
-  if (::access(program.c_str(), X_OK) != 0)
-    throw Error(program + ": cannot be started: " + std::strerror(errno));
-  std::vector<char*> arguments;
-  arguments.reserve(command.size() + 1);
-  for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
-  arguments.push_back(nullptr);
-  const pid_t parent = ::getpid(), child = ::fork();
-  if (child < 0) throw Error(program + ": cannot be started: " + std::strerror(errno));
-  if (child == 0) become(program.c_str(), arguments.data(), folder.c_str(), log.c_str(), parent);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) throw Error(program + ": cannot be waited for: " + std::strerror(errno));
-  if (WIFEXITED(status) && WEXITSTATUS(status) == s_notStarted)
-    throw Error(program + ": cannot be started in " + folder.string());
-  return status;
 }
 
 void doTask(const BatchFolder& folder, const BatchTask& task) {
@@ -209,15 +156,9 @@ void runCommand(const std::vector<std::string>& command, const fs::path& folder,
     if (!stream.flush()) throw Error(log.string() + ": cannot be written; is the disk full?");
   }
   if (command.front() == "copy") return copyFiles(command, folder);
-  const int status = spawn(command, folder, log);
-  if (WIFSIGNALED(status))
-    throw Error(command.front() + " was ended by signal " + std::to_string(WTERMSIG(status)) +
-                " (" + strsignal(WTERMSIG(status)) + ")");
-  if (WEXITSTATUS(status) == 0) return;
-  const std::string said = lastLine(log);
-  throw Error(said.empty() || said[0] == '$'
-                  ? command.front() + " ended with exit code " + std::to_string(WEXITSTATUS(status))
-                  : said);
+  std::vector<std::string> started = command;
+  started.front() = programFolder() / command.front();
+  io::runLogged(started, folder, log);
 }
 
 TaskOutcome runTask(const BatchFolder& folder, const BatchTask& task) {

@@ -9,7 +9,7 @@
 #include "io/map/PoleMapFile.h"
 #include "io/map/PoleTables.h"
 #include "localize/LocalizeReport.h"
-#include "report/picture/MapPicture.h"
+#include "report/picture/Pictures.h"
 #include "report/scene/MapScene.h"
 
 namespace polemcl::apps {

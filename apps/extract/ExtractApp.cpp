@@ -15,8 +15,7 @@
 #include "mrpt/rawlog/GnssFixes.h"
 #include "mrpt/rawlog/GnssWriter.h"
 #include "mrpt/rawlog/RawlogWriter.h"
-#include "report/picture/RangeImagePicture.h"
-#include "report/picture/ScanPicture.h"
+#include "report/picture/Pictures.h"
 
 namespace polemcl::apps {
 namespace {

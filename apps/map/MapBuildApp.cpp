@@ -13,7 +13,7 @@
 #include "map/DrivePoses.h"
 #include "map/MapBuildReport.h"
 #include "map/TimingDoubt.h"
-#include "report/picture/MapPicture.h"
+#include "report/picture/Pictures.h"
 
 namespace polemcl::apps {
 namespace {

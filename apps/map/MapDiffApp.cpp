@@ -7,7 +7,7 @@
 #include "io/map/Datum.h"
 #include "io/map/PoleMapFile.h"
 #include "mrpt/drawing/SceneParts.h"
-#include "report/picture/DiffPicture.h"
+#include "report/picture/Pictures.h"
 #include "report/scene/DiffScene.h"
 
 namespace polemcl::apps {

@@ -28,4 +28,4 @@ awk '
 draw_drive "$out/drive" "$top/config/hdl32e.ini" 801 0 world.track="$out/track.txt"
 "$bin/pole-map" build --quiet --config "$out/drive.ini" --input "$out/drive.rawlog" --output "$out/street.polemap" \
   --png "$out/map.png"
-convert "$out/map.png" -resize 1000x +dither -colors 32 "$pictures/first-map.png"
+convert "$out/map.png" -resize 1000x +dither -colors 64 "$pictures/first-map.png"

@@ -10,14 +10,11 @@ from markupsafe import Markup, escape
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
-from matplotlib.ticker import MaxNLocator
 
 from quantities import metres, number, plural
+from style import INK, MUTED, PANEL, PAPER, RULE, SERIES, TRUTH, round_steps, value_limit
 
 # What Matplotlib draws with, and the variable of report.css that takes its place.
-SERIES = ["#0072b2", "#c65102", "#00805d", "#a3447f", "#7d6608", "#4a5bd0"]
-TRUTH, INK, MUTED, RULE, PANEL, PAPER = (
-    "#b9bdc4", "#1d1f23", "#5d6269", "#d9d6ce", "#f4f2ec", "#fcfbf8")
 VARIABLES = {
     TRUTH: "truth", INK: "ink", MUTED: "muted", RULE: "rule", PANEL: "panel", PAPER: "paper",
     **{color: f"s{i}" for i, color in enumerate(SERIES)},
@@ -27,14 +24,6 @@ MARKS = "os^D"
 ARROW = Path([(-0.5, 0), (0, 0.6), (0.5, 0), (0, 0.6), (0, -0.8)])  # a value above the plot
 EXPONENTS = [-3 + i / 10 for i in range(51)]  # edges of the histograms' bins: 1 mm to 100 m
 LONGEST_NAME, MOST_NAMES = 16, 60  # characters, labels
-
-matplotlib.rcdefaults()  # whatever the user's own matplotlibrc says
-matplotlib.rcParams.update({
-    "axes.axisbelow": True, "axes.edgecolor": "none", "axes.facecolor": PANEL, "axes.grid": True,
-    "axes.labelcolor": INK, "font.size": 13, "grid.color": RULE, "grid.linewidth": 1,
-    "lines.scale_dashes": False, "svg.fonttype": "none", "text.parse_math": False,
-    "xtick.color": MUTED, "xtick.major.size": 0, "ytick.color": MUTED, "ytick.major.size": 0,
-})
 
 
 def dashes(i):
@@ -54,7 +43,7 @@ class Plot:
         self.axes = self.figure.subplots()
         self.axes.set(xlabel=x, ylabel=y)
         for axis, most in ((self.axes.xaxis, width // 90), (self.axes.yaxis, height // 45)):
-            axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 5, 10]))
+            axis.set_major_locator(round_steps(most))
 
     def errors_from_zero(self, limit, name, unit):
         """Titles the axis of y: centimetres for lengths below 0.1 m. Returns how many a unit has."""
@@ -91,12 +80,6 @@ class Plot:
         tag = re.sub(r"(?<=\d\.\d)\d+", "", tag)
         tag = re.sub(r"'DejaVu Sans'[^;\"]*", "var(--sans)", tag)
         return re.sub(r"#[0-9a-f]{6}\b", lambda color: f"var(--{VARIABLES[color[0]]})", tag)
-
-
-def value_limit(values):
-    """A little above the largest value, but not above 2.2 times the 95th percentile."""
-    ranked = sorted(values) or [1]
-    return max(1.1 * min(ranked[-1], 2 * ranked[math.ceil(0.95 * len(ranked)) - 1]), 1e-3)
 
 
 def sessions_figure(report, key, name, unit):

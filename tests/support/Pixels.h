@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <stdexcept>
-#include <utility>
 
 namespace polemcl::report {
 
@@ -25,17 +24,6 @@ class Pixels {
       return static_cast<unsigned>(m_image.at<std::uint8_t>(column, row, static_cast<int8_t>(c)));
     };
     return channel(2) << 16 | channel(1) << 8 | channel(0);  // stored as BGR
-  }
-  /// First and last column that is not white between two rows; (width, -1) if all are white.
-  std::pair<int, int> inkColumns(int top, int bottom) const {
-    std::pair<int, int> columns{width(), -1};
-    for (int y = top; y < bottom; ++y)
-      for (int x = 0; x < width(); ++x)
-        if (at(x, y) != 0xffffffu) {
-          columns.first = std::min(columns.first, x);
-          columns.second = std::max(columns.second, x);
-        }
-    return columns;
   }
   std::size_t count(unsigned color) const {
     std::size_t pixels = 0;

@@ -145,6 +145,20 @@ TEST_F(EvalApp, ThePictureIsNamedAfterTheEstimateUnlessTold) {
   EXPECT_NE(named, draw({"--title", "Another street"}));
 }
 
+TEST_F(EvalApp, WithoutMatplotlibAPictureIsRefusedInOneLineAndTheEarlierOneStays) {
+  writeText(at("run.png"), "earlier");
+  writeText(at("python/matplotlib.py"), "raise ImportError('No Matplotlib here')\n");
+  ::setenv("PYTHONPATH", at("python").c_str(), 1);
+  const auto before = names(fs::path(at("run.png")).parent_path());
+  const auto outcome = run(trajectory("truth.tum", {"--png", at("run.png")}));
+  ::unsetenv("PYTHONPATH");
+  expectFailure(outcome,
+                {"run.png: the picture could not be drawn: No Matplotlib here; install the "
+                 "package python3-matplotlib"});
+  EXPECT_EQ(readText(at("run.png")), "earlier");
+  EXPECT_EQ(names(fs::path(at("run.png")).parent_path()), before) << "nothing is left behind";
+}
+
 TEST_F(EvalApp, WritesTheTruthOfPfLocalization) {
   const auto convert = [&](const std::string& rows) {
     writeText(at("drive.tum"), rows);

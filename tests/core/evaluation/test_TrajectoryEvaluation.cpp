@@ -254,6 +254,13 @@ TEST(Evaluation, TheRadiusIsInclusive) {
   EXPECT_EQ(scoreMap({{0, 0}}, {{3, 4}}, std::nextafter(5.0, 0.0), false).matches, 0u);
 }
 
+TEST(Evaluation, DistanceFollowsTheTruePathRoundACorner) {
+  const std::vector<StampedPose2D> truth{{0, {0, 0, 0}}, {1, {3, 0, 0}}, {3, {3, 4, 0}}};
+  std::vector<PoseError> errors;
+  for (const double time : {-1.0, 0.0, 0.5, 1.0, 2.0, 3.0, 9.0}) errors.push_back({time});
+  EXPECT_EQ(distanceDriven(truth, errors), (std::vector<double>{0, 0, 1.5, 3, 5, 7, 7}));
+}
+
 TEST(Evaluation, NoMatchesScoreZero) {
   const MapScore score = scoreMap({{0, 0}}, {{9, 9}}, 1, true);
   EXPECT_EQ(score.matches, 0u);

@@ -184,6 +184,28 @@ TrajectoryErrors evaluateTrajectory(const std::vector<StampedPose2D>& truth,
   return summary;
 }
 
+std::vector<double> distanceDriven(const std::vector<StampedPose2D>& truth,
+                                   const std::vector<PoseError>& errors) {
+  std::vector<double> along(truth.size(), 0.0);
+  for (std::size_t i = 1; i < truth.size(); ++i)
+    along[i] = along[i - 1] + std::hypot(truth[i].pose.x - truth[i - 1].pose.x,
+                                         truth[i].pose.y - truth[i - 1].pose.y);
+  std::vector<double> distances;
+  for (const PoseError& error : errors) {
+    const auto later =
+        std::lower_bound(truth.begin(), truth.end(), error.time,
+                         [](const StampedPose2D& pose, double time) { return pose.time < time; });
+    const std::size_t i = static_cast<std::size_t>(later - truth.begin());
+    if (i == 0 || i == truth.size()) {
+      distances.push_back(i == 0 ? 0 : along.back());
+      continue;
+    }
+    const double share = (error.time - truth[i - 1].time) / (truth[i].time - truth[i - 1].time);
+    distances.push_back(along[i - 1] + share * (along[i] - along[i - 1]));
+  }
+  return distances;
+}
+
 MapScore scoreMap(const std::vector<Eigen::Vector2d>& truth,
                   const std::vector<Eigen::Vector2d>& map, double radius, bool oneToOne) {
   checkPoles(truth, "true map");

@@ -53,6 +53,10 @@ POLEMCL_EXPORT TrajectoryErrors evaluateTrajectory(const std::vector<StampedPose
                                                    Sampling sampling,
                                                    double maxTruthGap = longestTruthGap);
 
+/// \brief Distance driven along the true path at the time of each error, m; constant outside it.
+POLEMCL_EXPORT std::vector<double> distanceDriven(const std::vector<StampedPose2D>& truth,
+                                                  const std::vector<PoseError>& errors);
+
 /// \brief evaluateTrajectory() with Sampling::perPose, one estimate at a time, in constant memory.
 class POLEMCL_EXPORT TrajectoryEvaluator {
  public:

@@ -7,8 +7,7 @@
 #include <polemcl/core/common/Types.h>
 #include "core/common/PoseInterpolation.h"
 #include "core/common/Statistics.h"
-#include "report/picture/ErrorStrip.h"
-#include "report/picture/PlotAxes.h"
+#include "core/common/TickStep.h"
 
 namespace polemcl::report {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Statistics.h"
 #include "core/common/TickStep.h"
 #include "io/file/TextFile.h"
 #include "mrpt/drawing/SceneParts.h"
-#include "report/picture/ErrorStrip.h"
 #include "report/scene/LiveObjects.h"
 
 namespace polemcl::report {
@@ -112,6 +112,13 @@ void drawTimes(PanelPen& pen, const TimeLine& line) {
   }
 }
 
+/// Upper end of the errors: a little above the largest, but not above 2.2 times the 95th
+/// percentile, so that the first moments of a search do not flatten the rest.
+double limitOf(const std::vector<double>& errors) {
+  const double largest = *std::max_element(errors.begin(), errors.end());
+  return std::max(1.1 * std::min(largest, 2 * nearestRank(errors, 0.95)), 1e-3);
+}
+
 }  // namespace
 
 TimeLine makeTimeLine(const Playback& playback, const std::vector<float>& errors,
@@ -140,7 +147,7 @@ TimeLine makeTimeLine(const Playback& playback, const std::vector<float>& errors
   std::vector<double> known;
   for (const TimeLine::Column& column : line.columns)
     if (column.error) known.push_back(*column.error);
-  if (!known.empty()) line.limit = valueLimit(known);
+  if (!known.empty()) line.limit = limitOf(known);
   return line;
 }
 
