@@ -6,7 +6,8 @@
 #   --kilometre  the scans of DATA_DIR/kitti_odom_00_km as a folder (228 of Jichao-Peng/multi-sensor_fusion_learning)
 #   --tracks     folder of the road kaist01.txt.gz (sensor poses, 12 numbers a line)
 # Odometry is the true motion with 2 % noise, 1 % too long and 0.01 deg/m off (seeds 7 to 11 on the VLP-16 loop, 7 on
-# the others); on the kilometre also that of a real laser odometry. nuScenes has the poses by the planes in its scans
+# the others); on the kilometre also that of a real laser odometry, and the same in a wrong frame (x to the left:
+# "-turned"). nuScenes has the poses by the planes in its scans
 # (plane_adjustment.py); "sides_apart" is how far those by the points on the left and on the right end apart.
 # "street": worlds 701 to 720, drawn, 600 m, wheels: no place is passed again, so each loop is false.
 # "-alone": without any odometry, by the poles alone; "cast-630" to "cast-633" also: streets of 400 m, a scan a metre,
@@ -224,6 +225,9 @@ if [ -n "$kilometre" ]; then
   /usr/bin/python3 "$top/share/experiments/planar_odometry.py" "$data/kitti_odom_00_km/laser_odometry.txt" \
     laser/times.txt laser.tum
   real kilometre-laser laser "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise --odometry laser.tum"
+  # As if x were to the left: half of a right angle to each quaternion.
+  awk '{ h = sqrt(0.5); print $1, $2, $3, $4, $5, $6, h * ($7 + $8), h * ($8 - $7) }' OFMT=%.10f CONVFMT=%.10f laser.tum >turned.tum
+  real kilometre-turned laser "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise --odometry turned.tum"
   two_halves
 fi
 if [ -n "$tracks" ]; then
