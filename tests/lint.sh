@@ -5,6 +5,7 @@
 #   spelling  codespell knows no misspelling
 #   files     text files end with one newline, and have no spaces at line ends (Markdown may)
 #   words     no phrases that readers with another first language stumble over
+#   faults    each fault of tests/mutation is in the sources once
 #   tidy      clang-tidy has nothing to say (.clang-tidy); takes many minutes
 # Needs the packages that share/setup/install.sh full installs.
 set -eu
@@ -49,6 +50,16 @@ words() {
     -- ':!tests/lint.sh' ':!tests/releases' ':!*.svg'
 }
 
+faults() {
+  copy=$(mktemp -d)
+  good=yes
+  for list in mutations drawn; do
+    python3 -IS tests/mutation/insert.py . "$copy" "tests/mutation/$list.txt" >/dev/null || good=
+  done
+  rm -r "$copy"
+  [ "$good" ]
+}
+
 tidy() {
   cmake --preset clang -G Ninja >/dev/null
   # Not the tests, nor the generated identity of the build.
@@ -58,9 +69,9 @@ tidy() {
 [ $# -gt 0 ] || set -- --help
 for check in "$@"; do
   case $check in
-    format | spelling | files | words | tidy) ;;
+    format | spelling | files | words | faults | tidy) ;;
     *)
-      sed -n '2,9s/^# //p' "$0"
+      sed -n '2,10s/^# //p' "$0"
       [ "$check" = -h ] || [ "$check" = --help ] || exit 2
       exit 0
       ;;

@@ -43,7 +43,7 @@ build() {
 }
 
 lint() {
-  "$top/tests/lint.sh" format spelling files words
+  "$top/tests/lint.sh" format spelling files words faults
 }
 
 unit() {
