@@ -10,7 +10,6 @@ namespace polemcl::apps {
 namespace {
 
 constexpr double kLeastOffset = 0.02;  ///< s; what is found without one is up to 0.01 s
-constexpr double kMostOffset = 0.145;  ///< s; the search ends here
 
 TimedScan timedScan(const SessionScan& scan) {
   TimedScan result{scan.time, scan.pose_map_robot, {}};
@@ -46,7 +45,7 @@ std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped
            "[sensor] "
            "clock_offset_s = " +
            io::fixed(timing.clock + dead.timing.clock, 2) + errors(dead.clockSignificance) +
-           (std::abs(dead.timing.clock) < kMostOffset
+           (std::abs(dead.timing.clock) < kGreatestClock - 1e-6
                 ? ""
                 : ", or one still farther off: set it and build again");
   const TimingEstimate& found = dead.timing.known() ? dead : mapped;

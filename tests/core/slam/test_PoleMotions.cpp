@@ -165,7 +165,8 @@ TEST_F(PoleMotionsTest, ASlipIsNotBelievedWhereThePolesSayNothing) {
   EXPECT_GT(scans[21].motion->covariance(0, 0), scans[18].motion->covariance(0, 0));
 }
 
-/// Of another vehicle, turned by 90 degrees, backwards, without heading, or 1.5 times too long.
+/// An odometry turned by 90 degrees, one that goes backwards, one that always turns, and one that
+/// is too long.
 TEST_F(PoleMotionsTest, AnOdometryThatIsMostlyWrongIsNotUsed) {
   const std::vector<PoleScan> right = scans;
   const auto spoil = [](Pose2D& motion, int how) {

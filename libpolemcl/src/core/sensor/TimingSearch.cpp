@@ -17,9 +17,9 @@ constexpr double kAway[] = {1, 2, 4, 8};   // m between the two scans of a pair
 constexpr double kLongestPause = 1;        // s between successive scans, else no velocity
 constexpr double kWidest = 1, kFar = 0.3;  // m: gate of a pair, and greatest distance that counts
 constexpr std::size_t kMostPairs = 30000;
-constexpr double kGreatest = 15;           // clock offsets, in steps
-constexpr double kStep = 0.01;             // s
-constexpr std::size_t kFewestPairs = 100;  // for a correction of the ranges
+constexpr double kGreatest = 15;                      // clock offsets, in steps
+constexpr double kStep = kGreatestClock / kGreatest;  // 0.01 s
+constexpr std::size_t kFewestPairs = 100;             // for a correction of the ranges
 
 /// Sightings of one pole in two scans.
 struct Resighting {

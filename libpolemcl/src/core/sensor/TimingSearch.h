@@ -17,6 +17,9 @@ namespace polemcl {
 /// \brief Standard errors by which an estimate must be better than none.
 constexpr double kEnoughErrors = 4;
 
+/// \brief Greatest clock offset that is searched, s.
+constexpr double kGreatestClock = 0.15;
+
 /// \brief A pole as it was measured.
 struct TimedPole {
   double x = 0, y = 0;  ///< robot frame at the moment it was measured, m
@@ -58,7 +61,7 @@ struct RangeCorrection {
   bool isClear() const;
 };
 
-/// \brief Searches directions, cuts and clock offsets (±0.15 s).
+/// \brief Searches directions, cuts and clock offsets (±kGreatestClock).
 /// \param turnSeconds Duration of a turn of the LiDAR, s.
 /// \param stated Of the file, if `known()`: kept unless another one is better by kEnoughErrors. Its
 ///        `movingCut` must be false.
