@@ -66,6 +66,8 @@ void printConfig(const PrintRequest& request) {
 
 /// What is wrong with a command line; where a subcommand is missing, which ones there are.
 std::string problemOf(const CLI::App& cli, const CLI::ParseError& error) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))  // in the order given
+    return "not expected: " + CLI::detail::join(cli.remaining(true), " ");
   if (cli.get_require_subcommand_min() == 0 || !cli.get_subcommands().empty()) return error.what();
   std::vector<std::string> names;
   for (const CLI::App* command : cli.get_subcommands({})) names.push_back(command->get_name());

@@ -89,11 +89,13 @@ Figures motionFigures(const MotionEvalOptions& options) {
     metres += std::hypot(poles.x, poles.y) - std::hypot(truth.x, truth.y);
     radians += wrapAngle(poles.yaw - truth.yaw);
   }
+  const MotionCheck check = checkMotion(scans);
+  const std::string mounting = check.mountingDoubt();
   return {rows, text +
                     filled("the poles say {metres:3} m and {deg:2} deg more than the truth, over "
                            "{way:1} m\n",
                            {{"metres", metres}, {"deg", radians * 180 / M_PI}, {"way", way}}) +
-                    checkMotion(scans).verdict() + '\n'};
+                    check.verdict() + '\n' + (mounting.empty() ? "" : mounting + '\n')};
 }
 
 void declareMotion(CLI::App& cli, MotionEvalOptions& options) {

@@ -226,11 +226,12 @@ std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBui
   }
   for (std::size_t i = 0; summary.mapped && i < summary.mapped->fixes.size(); ++i)
     doubt(i, fixesDoubt(summary.mapped->fixes[i]));
-  for (std::size_t i = 0; i < summary.motions.size(); ++i)
+  for (std::size_t i = 0; i < summary.motions.size(); ++i) {
     if (summary.motions[i].contradicts())
-      warnings.push_back(job.inputs[i].filename().string() + ": " + summary.motions[i].verdict() +
-                         "; check " + job.poses[i].filename().string() +
-                         ", or build without --truth");
+      doubt(i, summary.motions[i].verdict() + "; check " + job.poses[i].filename().string() +
+                   ", or build without --truth");
+    doubt(i, summary.motions[i].mountingDoubt());
+  }
   const std::size_t poles = summary.map.poles.size();
   if (static_cast<double>(summary.twins) > kManyTwins * static_cast<double>(poles))
     warnings.push_back(

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/evaluation/MotionCheck.h"
+#include "support/ExpectHas.h"
 #include "support/PoleStreet.h"
 
 namespace polemcl::test_motion_check {
@@ -60,6 +61,18 @@ TEST(MotionCheck, ThatOnlyAPartAgreesIsSaid) {
   EXPECT_FALSE(check.contradicts());
   EXPECT_EQ(check.verdict().rfind("the poles agree with only a part of these poses (in ", 0), 0u)
       << check.verdict();
+}
+
+TEST(MotionCheck, TellsByHowMuchTheLidarIsTurned) {
+  EXPECT_EQ(checkMotion(drive(1)).mountingDoubt(), "");
+  for (const double degrees : {0.6, -4.0}) {
+    std::vector<SessionScan> scans = drive(1);
+    for (SessionScan& scan : scans) scan.pose_map_robot.yaw -= degrees * M_PI / 180;
+    const std::string text = checkMotion(scans).mountingDoubt();
+    EXPECT_HAS(text, degrees > 0 ? "farther left than its pose" : "farther right than its pose");
+    const double told = std::stod(text.substr(text.find("points ") + 7));
+    EXPECT_NEAR(told, std::abs(degrees), 0.1) << text;
+  }
 }
 
 TEST(MotionCheck, TellsAStepAndWhereItIs) {

@@ -36,8 +36,17 @@ class MotionCheck {
   bool contradicts() const { return 2 * m_contradicting > m_told || m_steps > 0; }
   /// \brief A line for people.
   std::string verdict() const;
+  /// \brief A line that tells by how much the LiDAR is turned on the vehicle, if straight stretches
+  /// by the poles point to one side of those by the poses; else empty.
+  std::string mountingDoubt() const;
 
  private:
+  /// Angle from the straight stretches of the poles to those of the poses, rad: sums over
+  /// stretches, each with the weight of its squared length, m^2.
+  struct {
+    std::size_t count = 0;
+    double weight = 0, angle = 0, square = 0;
+  } m_aside;
   std::size_t m_told = 0, m_contradicting = 0, m_steps = 0;
   double m_worstTime = 0, m_worstMetres = -1;  ///< of the steps, s and m
 };

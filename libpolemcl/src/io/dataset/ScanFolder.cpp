@@ -49,7 +49,8 @@ void checkCount(const fs::path& file, const std::string& what, std::size_t got,
   const std::string counts = std::to_string(got) + " " + what + " for " +
                              std::to_string(scans.files.size()) + " scans" + scans.place;
   if (got < expected) {
-    throw Error(file.string() + ": " + counts + ", " + std::to_string(expected) + " expected");
+    throw Error(file.string() + ": " + counts + ", " + std::to_string(expected) +
+                " expected; take away the scans that have none");
   }
   if (got == expected) return;
   // As many motions as scans: more likely a list with an extra first row than a list that is too

@@ -23,7 +23,8 @@ void pairInTurn(ScanFolder& folder, const fs::path& file, const std::vector<Stam
   if (rows.size() != folder.scans.size())
     throw Error(file.string() + ": " + std::to_string(rows.size()) + " poses for " +
                 std::to_string(folder.scans.size()) +
-                " scans that have no times of their own; give them a times.txt");
+                " scans that have no times of their own; give them a times.txt, or take away the "
+                "scans without a pose");
   for (std::size_t i = 0; i < rows.size(); ++i) folder.scans[i].time = rows[i].time;
   folder.nominalTimes = false;
   folder.notes.push_back("times of the scans: those of " + file.filename().string() +
