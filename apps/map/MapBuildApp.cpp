@@ -195,33 +195,36 @@ MappedDrives findPosesOf(std::vector<MappingSession>& drives, const MapBuildJob&
   return mapped;
 }
 
-/// The poses of the drives, and whether their poles doubt the timing.
+/// A doubt about one drive for the warnings, if there is any.
+void doubt(MapBuildSummary& summary, const MapBuildJob& job, std::size_t drive,
+           const std::string& text) {
+  if (!text.empty()) summary.doubts.push_back(job.inputs[drive].filename().string() + ": " + text);
+}
+
+/// The poses of the drives, and whether their poles doubt the timing or the mounting.
 void mapDrivesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
                  const AddedSessions& before, std::optional<io::Datum>& datum,
                  const AllSettings& settings, MapBuildSummary& summary) {
   const ScanTiming& timing = settings.sensor.timing;
   std::vector<TimingEstimate> dead;
-  for (const MappingSession& drive : drives) {
-    summary.filled.push_back(drive.filled);
-    dead.push_back(remainingTiming(drive, timing.seconds));
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    summary.filled.push_back(drives[i].filled);
+    dead.push_back(remainingTiming(drives[i], timing.seconds));
+    doubt(summary, job, i, checkMotion(drives[i].scans).mountingDoubt());
   }
   summary.mapped = findPosesOf(drives, job, before, datum, settings, summary.fixesApart);
-  for (std::size_t i = 0; i < drives.size(); ++i) {
-    const std::string doubt =
-        timingDoubt(dead[i], remainingTiming(drives[i], timing.seconds), timing);
-    if (!doubt.empty())
-      summary.timingDoubts.push_back(job.inputs[i].filename().string() + ": " + doubt);
-  }
+  for (std::size_t i = 0; i < drives.size(); ++i)
+    doubt(summary, job, i,
+          timingDoubt(dead[i], remainingTiming(drives[i], timing.seconds), timing));
 }
 
-/// Whether the poles contradict the true poses, or the timing of the scans.
+/// Whether the poles contradict the true poses, the timing of the scans or the mounting.
 void checkTruth(const std::vector<MappingSession>& drives, const MapBuildJob& job,
                 const ScanTiming& timing, MapBuildSummary& summary) {
   for (std::size_t i = 0; i < drives.size(); ++i) {
     summary.motions.push_back(checkMotion(drives[i].scans));
-    const std::string doubt = timingDoubtOfTruth(drives[i], timing);
-    if (!doubt.empty())
-      summary.timingDoubts.push_back(job.inputs[i].filename().string() + ": " + doubt);
+    doubt(summary, job, i, timingDoubtOfTruth(drives[i], timing));
+    doubt(summary, job, i, summary.motions.back().mountingDoubt());
   }
 }
 

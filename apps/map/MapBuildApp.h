@@ -57,9 +57,9 @@ struct MapBuildSummary {
   std::optional<MappedDrives> mapped;            ///< when odometry stood for poses
   /// Number of positions from satellites left out of each input, as scans are too far apart.
   std::vector<std::size_t> fixesApart;
-  std::vector<MotionCheck> motions;       ///< of each input, when its poses are a truth
-  std::vector<std::string> timingDoubts;  ///< sentences on inputs whose timing looks wrong
-  std::size_t twins = 0;                  ///< poles with another nearer than 1 m
+  std::vector<MotionCheck> motions;  ///< of each input, when its poses are a truth
+  std::vector<std::string> doubts;   ///< sentences on inputs whose timing or mounting looks wrong
+  std::size_t twins = 0;             ///< poles with another nearer than 1 m
 };
 
 /// \brief Builds the map, with a history of each pole for later updates, and writes the files of

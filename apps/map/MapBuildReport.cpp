@@ -216,7 +216,7 @@ std::map<std::string, std::string> mapFacts(const AllSettings& settings,
 }
 
 std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBuildJob& job) {
-  std::vector<std::string> warnings = summary.timingDoubts;
+  std::vector<std::string> warnings = summary.doubts;
   const auto doubt = [&](std::size_t drive, const std::string& text) {
     if (!text.empty()) warnings.push_back(job.inputs[drive].filename().string() + ": " + text);
   };
@@ -226,12 +226,10 @@ std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBui
   }
   for (std::size_t i = 0; summary.mapped && i < summary.mapped->fixes.size(); ++i)
     doubt(i, fixesDoubt(summary.mapped->fixes[i]));
-  for (std::size_t i = 0; i < summary.motions.size(); ++i) {
+  for (std::size_t i = 0; i < summary.motions.size(); ++i)
     if (summary.motions[i].contradicts())
       doubt(i, summary.motions[i].verdict() + "; check " + job.poses[i].filename().string() +
                    ", or build without --truth");
-    doubt(i, summary.motions[i].mountingDoubt());
-  }
   const std::size_t poles = summary.map.poles.size();
   if (static_cast<double>(summary.twins) > kManyTwins * static_cast<double>(poles))
     warnings.push_back(

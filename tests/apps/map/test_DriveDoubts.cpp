@@ -2,6 +2,7 @@
 /// \brief pole-map build without true poses: what it says of an odometry that is wrong.
 
 #include <functional>
+#include <sstream>
 
 #include "cli/MapPlane.h"
 #include "io/data/Trajectory.h"
@@ -137,6 +138,30 @@ TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
   EXPECT_HAS(info().at("warnings"), "in.rawlog: the poles contradict 1 of");
   EXPECT_EQ(slipped.out.find("no odometry leads"), std::string::npos) << slipped.out;
   expectRightPlaces();
+}
+
+TEST_F(DriveDoubts, ALidarThatIsTurnedIsTold) {
+  const std::string told = "warning: in.rawlog: as the poles pass, the LiDAR points 3.";
+  writeStreet(folder / "in", 30);
+  import("in");
+  EXPECT_EQ(build().err, "");
+  std::string rows;  // to the left by 3.2°
+  for (const std::string& line : io::readLines(folder / "in" / "odometry.txt")) {
+    double x = 0, y = 0, yaw = 0;
+    if (std::istringstream(line) >> x >> y >> yaw)
+      rows += io::fixed(x - 0.056 * y, 9) + ' ' + io::fixed(y + 0.056 * x, 9) + ' ' +
+              io::fixed(yaw, 9) + " 0.02 0.01 0.003\n";
+  }
+  writeText(folder / "in" / "odometry.txt", rows);
+  import("in");
+  EXPECT_HAS(build().err, told);
+  auto truth = io::readTum(folder / "in.tum");
+  for (auto& row : truth) row.pose.rotate(Eigen::AngleAxisd(-0.056, Eigen::Vector3d::UnitZ()));
+  io::writeTum(folder / "in.tum", truth);
+  const auto outcome =
+      runProgram(mapMain, {"build", "--config", config(), "--input", at("in.rawlog"), "--truth",
+                           at("in.tum"), "--output", at("street.polemap")});
+  EXPECT_HAS(outcome.err, told);
 }
 
 TEST_F(DriveDoubts, PositionsOfAnotherClockAreTold) {

@@ -19,8 +19,10 @@ constexpr double s_headingSigma = 0.002;  // rad, as [map] heading_sigma_deg
 constexpr double s_beyondChance = 16.27;  // 99.9 % of chi-squared with 3 degrees of freedom
 // Least size of a step in the poses. Bad timing alone makes smaller errors over four scans.
 constexpr double s_stepMetres = 0.3, s_stepTurn = 0.03;  // m, rad
-constexpr double s_straight = 0.05;                      // rad, of the turn within a stretch
-constexpr std::size_t s_leastStraight = 5;               // stretches that tell an angle
+// What tells how the LiDAR is mounted.
+constexpr double s_mostTurn = 0.2;  // rad, within a stretch
+constexpr std::size_t s_leastStretches = 5;
+constexpr double s_aheadWeight = 2e-4;            // rad^2: it stands within 2 m of where it is said
 constexpr double s_leastAside = 0.2, s_sure = 4;  // deg; standard errors: smaller ones are chance
 // Other scans confirm a step if theirs differs by less, m and share. It differs a little, as poles
 // were deskewed by the poses.
@@ -106,15 +108,7 @@ void MotionCheck::add(const ScanRegistration& poles, const Pose2D& truth, double
   if (poles.pairs < s_leastPairs) return;
   ++m_told;
   const Eigen::Vector3d error = errorOf(poles, truth);
-  if (const double way = std::hypot(truth.x, truth.y);
-      way > s_stepMetres && std::abs(truth.yaw) < s_straight && poles.pairs > s_leastPairs) {
-    const double angle =
-        wrapAngle(std::atan2(truth.y, truth.x) - std::atan2(poles.motion.y, poles.motion.x));
-    ++m_aside.count;
-    m_aside.weight += way * way;
-    m_aside.angle += way * way * angle;
-    m_aside.square += way * way * angle * angle;
-  }
+  addMounting(poles, truth);
   if (isBeyondChance(poles, error)) ++m_contradicting;
   if (!isConfirmed || !contradictsClearly(poles, truth)) return;
   ++m_steps;
@@ -123,15 +117,31 @@ void MotionCheck::add(const ScanRegistration& poles, const Pose2D& truth, double
   m_worstTime = time;
 }
 
+void MotionCheck::addMounting(const ScanRegistration& poles, const Pose2D& truth) {
+  const double way = std::hypot(truth.x, truth.y);
+  if (way < s_stepMetres || std::abs(truth.yaw) > s_mostTurn || poles.pairs <= s_leastPairs) return;
+  const double aside = (poles.motion.x * truth.y - poles.motion.y * truth.x) / way;
+  const Eigen::Vector2d causes(way, truth.yaw);
+  ++m_mounting.stretches;
+  m_mounting.matrix += causes * causes.transpose();
+  m_mounting.vector += causes * aside;
+  m_mounting.square += aside * aside;
+}
+
 std::string MotionCheck::mountingDoubt() const {
-  if (m_aside.count < s_leastStraight) return "";
-  const double angle = m_aside.angle / m_aside.weight;
-  const double variance = std::max(0.0, m_aside.square / m_aside.weight - angle * angle);
-  const double degrees = angle * 180 / M_PI;
-  const double sigma = std::sqrt(variance / static_cast<double>(m_aside.count - 1)) * 180 / M_PI;
+  if (m_mounting.stretches < s_leastStretches) return "";
+  Eigen::Matrix2d matrix = m_mounting.matrix;
+  matrix(1, 1) += s_aheadWeight;
+  const Eigen::Matrix2d covariance = matrix.inverse();
+  const Eigen::Vector2d solution = covariance * m_mounting.vector;
+  const double residual = std::max(0.0, m_mounting.square - solution.dot(m_mounting.vector));
+  const double degrees = solution.x() * 180 / M_PI;
+  const double sigma =
+      std::sqrt(residual / static_cast<double>(m_mounting.stretches - 2) * covariance(0, 0)) * 180 /
+      M_PI;
   if (std::abs(degrees) < std::max(s_leastAside, s_sure * sigma)) return "";
-  return "by its straight stretches, the LiDAR points " + decimals(std::abs(degrees), 2) +
-         "° (sigma " + decimals(sigma, 2) + "°) farther " + (angle > 0 ? "left" : "right") +
+  return "as the poles pass, the LiDAR points " + decimals(std::abs(degrees), 2) + "° (sigma " +
+         decimals(sigma, 2) + "°) farther " + (degrees > 0 ? "left" : "right") +
          " than its pose on the vehicle says (--sensor-pose, [sensor] pose)";
 }
 

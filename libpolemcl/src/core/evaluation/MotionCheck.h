@@ -3,6 +3,7 @@
 /// \brief Do the poses of a drive agree with how its poles move from scan to scan? No map, no
 /// filter.
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -36,17 +37,22 @@ class MotionCheck {
   bool contradicts() const { return 2 * m_contradicting > m_told || m_steps > 0; }
   /// \brief A line for people.
   std::string verdict() const;
-  /// \brief A line that tells by how much the LiDAR is turned on the vehicle, if straight stretches
-  /// by the poles point to one side of those by the poses; else empty.
+  /// \brief A line that tells by how much the LiDAR is turned on the vehicle, if stretches by the
+  /// poles point to one side of those by the poses; else empty.
   std::string mountingDoubt() const;
 
  private:
-  /// Angle from the straight stretches of the poles to those of the poses, rad: sums over
-  /// stretches, each with the weight of its squared length, m^2.
+  void addMounting(const ScanRegistration& poles, const Pose2D& truth);
+
+  /// Normal equations of what explains how far, in m, the poles are to the right of the poses: way
+  /// in m times the angle by which the LiDAR is turned to the left, and turn in rad times the
+  /// distance in m by which it stands farther back.
   struct {
-    std::size_t count = 0;
-    double weight = 0, angle = 0, square = 0;
-  } m_aside;
+    std::size_t stretches = 0;
+    Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d vector = Eigen::Vector2d::Zero();
+    double square = 0;
+  } m_mounting;
   std::size_t m_told = 0, m_contradicting = 0, m_steps = 0;
   double m_worstTime = 0, m_worstMetres = -1;  ///< of the steps, s and m
 };
