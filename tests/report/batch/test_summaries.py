@@ -78,6 +78,16 @@ class Summaries(unittest.TestCase):
         self.assertEqual([plain[key] for key in ("setting", "runs", "lost", "failed")], ["plain", 6, 2, 1])
         self.assertEqual((plain["localized_sessions"], plain["lost_sessions"]), (3, 1))
 
+    def test_largest_is_that_of_all_runs_and_lost_sessions_have_no_good_run(self):
+        def first_alone(results):
+            for one in results["results"][1:3]:
+                one["runs"] = []
+
+        def second_lost(results):
+            results["results"][1]["runs"][0]["state"] = "lost"
+        self.near(setting(0, first_alone)["figures"]["pos_max"]["largest"], 0.9)  # their mean is 0.6
+        self.assertEqual(setting(0, second_lost)["lost_sessions"], 2)
+
     def test_scores_are_means_over_the_maps(self):
         def change(results):  # P 1, R 0.8, F1 16/18
             results["results"][0]["map_score"] = results["results"][3]["map_score"]
