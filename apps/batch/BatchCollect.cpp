@@ -20,7 +20,7 @@
 #include "io/file/Process.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
-#include "report/batch/BatchFiles.h"
+#include "report/batch/BatchJson.h"
 #include "report/batch/BatchMeasures.h"
 #include "report/batch/PublishedResults.h"
 
@@ -312,9 +312,6 @@ void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& resu
                      const BatchTimings& timings) {
   const fs::path& path = folder.path();
   report::writeResultsJson(path / "results.json", results);
-  report::writeRunsCsv(path / "runs.csv", results);
-  report::writeSessionsCsv(path / "sessions.csv", results);
-  report::writeMapsCsv(path / "maps.csv", results);
   Json times = {{"machine", timings.machine}, {"wall_s", timings.wall}, {"jobs", timings.jobs}};
   times["tasks"] = Json::array();
   for (const TaskTimes& task : timings.tasks)
@@ -328,8 +325,10 @@ void writeReport(const BatchFolder& folder) {
     command.emplace_back(".");
     runCommand(command, folder.path(), fs::absolute(folder.log("report")));
   } catch (const Error& error) {
-    throw Error("report.html and table.tex are not written, all other results are: " +
-                std::string(error.what()));
+    throw Error(
+        "report.html, table.tex, the CSV files and `summary` of results.json are not written, "
+        "all other results are: " +
+        std::string(error.what()));
   }
 }
 

@@ -42,13 +42,14 @@ BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& plan);
 /// \brief Removes all results and the report of an earlier state of the batch.
 void removeResults(const BatchFolder& folder);
 
-/// \brief Writes `results.json`, `runs.csv`, `sessions.csv`, `maps.csv` and `timings.json` into the
-/// batch's folder. \throws Error when one cannot be written.
+/// \brief Writes `results.json`, without `summary`, and `timings.json` into the batch's folder.
+/// \throws Error when one cannot be written.
 void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,
                      const BatchTimings& timings);
 
-/// \brief Makes `report.html` and `table.tex` of these files, by the script share/report/report.py.
-/// \throws Error with the script's last line, which names the packages that it misses.
+/// \brief Makes `report.html`, `table.tex`, `runs.csv`, `sessions.csv` and `maps.csv` of these
+/// files and adds `summary` to `results.json`, by the script share/report/report.py. \throws Error
+/// with the script's last line, which names the packages that it misses.
 void writeReport(const BatchFolder& folder);
 
 }  // namespace polemcl::apps

@@ -1,9 +1,10 @@
-"""Report of a batch: from results.json to report.html and table.tex.
+"""Report of a batch: from results.json to report.html, table.tex, runs.csv, sessions.csv and maps.csv.
 
 Usage: report.py FOLDER
   FOLDER  folder of the batch, with results.json; timings.json is shown where it is there
 
-Needs the Debian packages python3-jinja2 and python3-matplotlib. The same results give the same bytes.
+It also adds `summary` to results.json: means and spreads over runs and over sessions. Needs the Debian
+packages python3-jinja2 and python3-matplotlib. The same results give the same bytes.
 """
 
 import json
@@ -19,7 +20,9 @@ try:
     import figures
 except ImportError as error:
     sys.exit(f"{error}; install the packages python3-jinja2 and python3-matplotlib")
+import files
 import quantities
+import summaries
 from quantities import Column
 
 HERE = Path(__file__).parent
@@ -31,8 +34,7 @@ COLUMNS = {  # key of a figure: symbol and index
 }
 SESSION_KEYS = ("pos_mean", "pos_rmse", "ang_mean_deg", "ang_rmse_deg")
 RUN_KEYS = ("pos_mean", "pos_rmse", "pos_max", "lat_mean", "lon_mean", "ang_mean_deg", "ang_rmse_deg")
-WAYS = {"near_1m": "authors' count, 1\u00a0m", "one_to_one_1m": "one to one, 1\u00a0m",
-        "one_to_one_0.5m": "one to one, 0.5\u00a0m"}
+WAYS = dict(zip(summaries.WAYS, ("authors' count, 1\u00a0m", "one to one, 1\u00a0m", "one to one, 0.5\u00a0m")))
 
 
 def column(key, values):
@@ -50,11 +52,6 @@ def clean(value):
     return value
 
 
-def mean(values):
-    known = [value for value in values if value is not None]
-    return sum(known) / len(known) if known else None
-
-
 def ini_values(text):
     """The values of an INI text by section.key, without comments."""
     values, section = {}, ""
@@ -69,7 +66,7 @@ def ini_values(text):
 
 
 class Report:
-    """What the templates show: the results, with all that belongs to a setting in one place."""
+    """What the templates show: results that are summed up, all that belongs to a setting in one place."""
 
     def __init__(self, results, timings=None):
         self.results = results = clean(results)
@@ -128,8 +125,8 @@ class Report:
 
     def their_mean(self, system, setting, key):
         """Its mean over the sessions of which ours has a figure as well."""
-        return mean(self.theirs(system, one, key) for one in setting["summary"]["sessions"]
-                    if one["figures"]["pos_mean"]["count"])
+        return summaries.spread(self.theirs(system, one, key) for one in setting["summary"]["sessions"]
+                                if one["figures"]["pos_mean"]["count"])["mean"]
 
     def sharing(self, setting):
         """The systems that published f_map for sessions of a setting."""
@@ -242,11 +239,14 @@ def tables(report):
 def write(file, text):
     """Writes all of a file or nothing, also when the power is cut."""
     part = file.with_name(file.name + ".part")
-    with part.open("w", encoding="utf-8", newline="\n") as stream:
-        stream.write(text)
-        stream.flush()
-        os.fsync(stream.fileno())
-    os.replace(part, file)
+    try:
+        with part.open("w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(part, file)
+    finally:
+        part.unlink(missing_ok=True)
     folder = os.open(file.parent, os.O_RDONLY)
     os.fsync(folder)
     os.close(folder)
@@ -263,9 +263,13 @@ def main():
     folder = Path(sys.argv[1])
     timings = folder / "timings.json"
     try:
-        report = Report(read(folder / "results.json"), read(timings) if timings.exists() else None)
-        write(folder / "table.tex", tables(report))
-        write(folder / "report.html", page(report))
+        results = summaries.summed_up(read(folder / "results.json"))
+        report = Report(results, read(timings) if timings.exists() else None)
+        texts = {"results.json": files.json_text(results) + "\n", "runs.csv": files.runs_csv(results),
+                 "sessions.csv": files.sessions_csv(results), "maps.csv": files.maps_csv(results),
+                 "table.tex": tables(report), "report.html": page(report)}
+        for name, text in texts.items():
+            write(folder / name, text)
     except (OSError, ValueError) as error:
         print(f"report.py: {error}", file=sys.stderr)
         return 1

@@ -232,13 +232,15 @@ TEST_F(BatchApp, WithoutItsPackagesTheReportAloneIsMissing) {
   options.resume = true;
   const std::string message = messageOf([&] { doBatch(options); });
   ::unsetenv("PYTHONPATH");
-  EXPECT_EQ(message.rfind("report.html and table.tex are not written, all other results are: No "
-                          "Matplotlib here; install the packages python3-jinja2 and "
-                          "python3-matplotlib; ",
+  EXPECT_EQ(message.rfind("report.html, table.tex, the CSV files and `summary` of results.json are "
+                          "not written, all other results are: No Matplotlib here; install the "
+                          "packages python3-jinja2 and python3-matplotlib; ",
                           0),
             0u)
       << message;
   EXPECT_FALSE(fs::exists(*s_folder / "bare/report.html"));
+  EXPECT_FALSE(fs::exists(*s_folder / "bare/runs.csv"));
+  EXPECT_EQ(resultsIn(*s_folder / "bare")["results"].size(), 6u);
   doBatch(options);
   EXPECT_EQ(left("bare"), left("done"));
 }

@@ -9,6 +9,18 @@
 
 namespace polemcl::report::test_batch_results {
 
+TEST(BatchResults, ARunIsLostWithoutAPoseOrFarOff) {
+  BatchRun run = runWith(0, 0.1, 0.1);
+  EXPECT_STREQ(stateOf(run, 2), "ok");
+  run.errors.posEnd = 2.1;  // it ended somewhere else
+  EXPECT_STREQ(stateOf(run, 2), "lost");
+  run.errors.posEnd = 0.1, run.errors.posMean = 2.1;
+  EXPECT_STREQ(stateOf(run, 2), "lost");
+  EXPECT_STREQ(stateOf(run, 3), "ok");
+  EXPECT_STREQ(stateOf(BatchRun(), 2), "lost");
+  EXPECT_STREQ(stateOf(failedRun(0, "no map"), 2), "failed");
+}
+
 TEST(BatchResults, HistogramEdgesAreTenToAFactorOfTen) {
   EXPECT_NEAR(ErrorHistogram::edge(0), 1e-3, 1e-15);
   EXPECT_NEAR(ErrorHistogram::edge(10), 1e-2, 1e-14);

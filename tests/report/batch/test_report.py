@@ -1,6 +1,6 @@
 """Report of a batch: tables, plots and page that share/report/report.py makes of sample.json.
 
-sample.json holds scoredBatch() of tests/support/SampleBatches.h; test_BatchFiles.cpp keeps it so.
+sample.json holds scoredBatch() of tests/support/SampleBatches.h; test_BatchJson.cpp keeps it so.
 """
 
 import contextlib
@@ -21,10 +21,13 @@ import unittest.mock
 HERE = pathlib.Path(__file__).parent
 SHARE = HERE.parents[2] / "share"
 sys.path.insert(0, str(SHARE / "report"))
+import files  # noqa: E402
 import quantities  # noqa: E402
 import report  # noqa: E402
+import summaries  # noqa: E402
 
-SAMPLE = json.loads((HERE / "sample.json").read_text(encoding="utf-8"))
+WRITTEN = json.loads((HERE / "sample.json").read_text(encoding="utf-8"))
+SAMPLE = summaries.summed_up(WRITTEN)
 TIMES = {"machine": "2 cores & more", "wall_s": 100, "jobs": 2,
          "tasks": [{"kind": "extract", "seconds": [2, 1, 3]}, {"kind": "map", "seconds": []}]}
 
@@ -142,11 +145,15 @@ class Pages(unittest.TestCase):
         for seconds in (100, 6000):
             with tempfile.TemporaryDirectory() as folder:
                 folder = pathlib.Path(folder)
-                (folder / "results.json").write_text(json.dumps(SAMPLE))
+                (folder / "results.json").write_text(json.dumps(SAMPLE if made else WRITTEN))
                 (folder / "timings.json").write_text(json.dumps({**TIMES, "wall_s": seconds}))
                 subprocess.run([sys.executable, "-B", SHARE / "report/report.py", folder], check=True)
                 made.append((folder / "report.html").read_text() + (folder / "table.tex").read_text())
-                self.assertEqual(len(list(folder.iterdir())), 4)
+                self.assertEqual({one.name for one in folder.iterdir()}, {
+                    "report.html", "table.tex", "results.json", "timings.json", "runs.csv", "sessions.csv",
+                    "maps.csv"})
+                self.assertEqual((folder / "results.json").read_text(), files.json_text(SAMPLE) + "\n")
+                self.assertEqual((folder / "sessions.csv").read_text(), files.sessions_csv(SAMPLE))
         self.assertNotEqual(*made)
         self.assertEqual(*map(rest, made))
         self.assertEqual(Page(page(timings=TIMES)).row("timings", "extract"),
@@ -335,6 +342,22 @@ class Usage(unittest.TestCase):
         code, said = self.run_script("/not/there")
         self.assertEqual((code, said.count("\n")), (1, 1))
         self.assertIn("/not/there/results.json", said)
+
+    def test_writes_nothing_of_results_that_it_cannot_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "results.json"
+            file.write_text(json.dumps(WRITTEN)[:-1])
+            code, said = self.run_script(folder)
+            self.assertEqual((code, said.count("\n"), list(file.parent.iterdir())), (1, 1, [file]))
+
+    def test_leaves_no_part_of_a_file_that_it_cannot_write(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file, table = pathlib.Path(folder) / "results.json", pathlib.Path(folder) / "runs.csv"
+            file.write_text(json.dumps(WRITTEN))
+            table.mkdir()
+            code, said = self.run_script(folder)
+            self.assertEqual((code, said.count("\n"), set(file.parent.iterdir())), (1, 1, {file, table}))
+            self.assertIn("runs.csv", said)
 
 
 if __name__ == "__main__":

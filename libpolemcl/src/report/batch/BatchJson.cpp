@@ -1,10 +1,8 @@
-#include <algorithm>
+#include "report/batch/BatchJson.h"
+
 #include <nlohmann/json.hpp>
-#include <ostream>
 
 #include "io/file/AtomicFile.h"
-#include "report/batch/BatchFiles.h"
-#include "report/batch/RunMetrics.h"
 
 namespace polemcl::report {
 namespace {
@@ -15,25 +13,35 @@ constexpr unsigned resultsVersion = 2;
 
 // NaN becomes null by itself.
 Json jsonOf(const ErrorMetrics& errors) {
-  Json json;
-  for (const MetricName& name : metricNames) json[name.key] = errors.*name.figure;
-  json["poses"] = errors.poses;
-  json["unmatched"] = errors.unmatched;
-  return json;
+  return {{"pos_mean", errors.posMean},
+          {"pos_rmse", errors.posRmse},
+          {"pos_max", errors.posMax},
+          {"pos_end", errors.posEnd},
+          {"lat_mean", errors.latMean},
+          {"lat_std", errors.latStd},
+          {"lon_mean", errors.lonMean},
+          {"lon_std", errors.lonStd},
+          {"x_rmse", errors.xRmse},
+          {"y_rmse", errors.yRmse},
+          {"ang_mean_deg", errors.angMeanDeg},
+          {"ang_std_deg", errors.angStdDeg},
+          {"ang_rmse_deg", errors.angRmseDeg},
+          {"poses", errors.poses},
+          {"unmatched", errors.unmatched}};
 }
 
 Json jsonOf(const HealthShares& health) {
-  Json json;
-  for (const ShareName& name : shareNames) json[name.key] = health.*name.share;
-  json["first_pose_scan"] = health.firstPoseScan ? Json(*health.firstPoseScan) : Json();
-  json["relocalizations"] = health.relocalizations;
-  return json;
+  return {{"ok", health.ok},
+          {"degraded", health.degraded},
+          {"lost", health.lost},
+          {"first_pose_scan", health.firstPoseScan ? Json(*health.firstPoseScan) : Json()},
+          {"relocalizations", health.relocalizations}};
 }
 
 Json jsonOf(const BatchRun& run, double lostBound) {
   return {{"run", run.run},
           {"seed", run.seed},
-          {"state", name(stateOf(run, lostBound))},
+          {"state", stateOf(run, lostBound)},
           {"failure", run.failure},
           {"errors", jsonOf(run.errors)},
           {"health", jsonOf(run.health)}};
@@ -69,10 +77,10 @@ Json jsonOf(const MapScore& score) {
 }
 
 Json jsonOf(const MapScores& scores) {
-  Json json;
-  json["truth"] = scores.truth;
-  for (const ScoreName& name : scoreNames) json[name.key] = jsonOf(scores.*name.score);
-  return json;
+  return {{"truth", scores.truth},
+          {"near_1m", jsonOf(scores.near)},
+          {"one_to_one_1m", jsonOf(scores.oneToOne)},
+          {"one_to_one_0.5m", jsonOf(scores.oneToOneHalf)}};
 }
 
 Json jsonOf(const SessionResult& result, const BatchResults& batch) {
@@ -85,58 +93,6 @@ Json jsonOf(const SessionResult& result, const BatchResults& batch) {
   json["runs"] = Json::array();
   for (const BatchRun& run : result.runs) json["runs"].push_back(jsonOf(run, batch.lostBound));
   json["plots"] = jsonOf(result.plots);
-  return json;
-}
-
-Json jsonOf(const Spread& spread) {
-  return {{"mean", spread.mean},
-          {"deviation", spread.deviation},
-          {"largest", spread.largest},
-          {"count", spread.count}};
-}
-
-Json jsonOf(const MetricSpreads& figures) {
-  Json json;
-  for (const MetricName& name : metricNames) json[name.key] = jsonOf(figures.*name.spread);
-  json["axis_rmse"] = jsonOf(figures.axisRmse);
-  for (const ShareName& name : shareNames)
-    json[std::string(name.key) + "_share"] = jsonOf(figures.*name.spread);
-  return json;
-}
-
-void setCounts(Json& json, const RunCounts& counts) {
-  json["runs"] = counts.runs;
-  json["lost"] = counts.lost;
-  json["failed"] = counts.failed;
-}
-
-Json jsonOf(const ConfigurationSummary& summary, const BatchResults& batch,
-            std::size_t configuration) {
-  Json json;
-  json["setting"] = batch.configurations[configuration].name;
-  setCounts(json, summary.counts);
-  json["localized_sessions"] = summary.localized;
-  json["lost_sessions"] = summary.lostSessions;
-  json["last_over_first"] = summary.lastOverFirst;
-  json["f_map"] = jsonOf(summary.mapShare);
-  json["scored_maps"] = summary.scores.maps;
-  for (const ScoreName& name : scoreNames) {
-    const ScoreMeans& means = summary.scores.*name.means;
-    json["map_score"][name.key] = {
-        {"precision", means.precision}, {"recall", means.recall}, {"f1", means.f1}};
-  }
-  json["figures"] = jsonOf(summary.figures);
-  json["sessions"] = Json::array();
-  for (const SessionSummary& session : summary.sessions) {
-    Json one;
-    one["session"] = batch.sessions[session.session].name;
-    one["f_map"] = session.mapShare;
-    one["map_poles"] = session.mapPoles;
-    setCounts(one, session.counts);
-    one["relocalizations"] = session.relocalizations;
-    one["figures"] = jsonOf(session.figures);
-    json["sessions"].push_back(std::move(one));
-  }
   return json;
 }
 
@@ -178,10 +134,6 @@ Json jsonOf(const BatchResults& batch) {
   json["failures"] = Json::array();
   for (const FailedTask& task : batch.failures)
     json["failures"].push_back({{"task", task.task}, {"reason", task.reason}, {"log", task.log}});
-  json["summary"] = Json::array();
-  const Summaries summaries = summarize(batch);
-  for (std::size_t i = 0; i < summaries.size(); ++i)
-    json["summary"].push_back(jsonOf(summaries[i], batch, i));
   json["results"] = Json::array();
   for (std::size_t i = 0; i < batch.configurations.size(); ++i)
     for (std::size_t k = 0; k < batch.sessions.size(); ++k)
@@ -190,42 +142,12 @@ Json jsonOf(const BatchResults& batch) {
   return json;
 }
 
-bool fitsALine(const Json& value) {
-  return value.empty() ||
-         (value.is_array() && std::none_of(value.begin(), value.end(), [](const Json& element) {
-            return element.is_structured();
-          }));
-}
-
-/// Indented by two, but lists of plain values on one line: a path is not a page.
-void print(std::ostream& out, const Json& value, std::size_t indent) {
-  const auto text = [](const Json& part) {
-    return part.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  };
-  if (!value.is_structured() || fitsALine(value)) {
-    out << text(value);
-    return;
-  }
-  const bool object = value.is_object();
-  const std::string margin(indent + 2, ' ');
-  bool first = true;
-  out << (object ? '{' : '[');
-  for (auto element = value.begin(); element != value.end(); ++element) {
-    out << (first ? "\n" : ",\n") << margin;
-    if (object) out << text(element.key()) << ": ";
-    print(out, *element, indent + 2);
-    first = false;
-  }
-  out << '\n' << std::string(indent, ' ') << (object ? '}' : ']');
-}
-
 }  // namespace
 
 void writeResultsJson(const std::filesystem::path& file, const BatchResults& results) {
-  io::AtomicFile out(file);
-  print(out.stream(), jsonOf(results), 0);
-  out.stream() << '\n';
-  out.commit();
+  // What a failed task said need not be UTF-8.
+  const auto replace = Json::error_handler_t::replace;
+  io::writeFile(file, jsonOf(results).dump(2, ' ', false, replace) + '\n');
 }
 
 }  // namespace polemcl::report

@@ -13,6 +13,13 @@ constexpr double binsPerDecade = 10;
 
 }  // namespace
 
+const char* stateOf(const BatchRun& run, double lostBound) {
+  if (!run.failure.empty()) return "failed";
+  const ErrorMetrics& errors = run.errors;
+  const bool known = errors.poses > 0 && std::isfinite(errors.posMean);
+  return !known || errors.posMean > lostBound || errors.posEnd > lostBound ? "lost" : "ok";
+}
+
 double ErrorHistogram::edge(std::size_t bin) {
   return std::pow(10, lowestExponent + static_cast<double>(bin) / binsPerDecade);
 }

@@ -2,10 +2,10 @@
 /// \file BatchResults.h
 /// \brief All that a finished batch has to tell: sessions x configurations x runs, as plain data.
 ///
-/// Filled from run folders by the program, measured with BatchMeasures.h, summed up by
-/// BatchSummary.h, written by BatchFiles.h. It holds no clock and no timing: the
-/// same batch gives the same bytes. A figure that does not exist is NaN; it is shown as a dash, an
-/// empty field or `null`.
+/// Filled from run folders by the program, measured with BatchMeasures.h, written by BatchJson.h,
+/// summed up and shown by share/report. It holds no clock and no timing: the same batch gives the
+/// same bytes. A figure that does not exist is NaN; it is shown as a dash, an empty field or
+/// `null`.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -73,6 +73,8 @@ struct BatchRun {
   ErrorMetrics errors;
   HealthShares health;
 };
+/// \brief "failed": it has no result. "lost": see BatchResults::lostBound. Else "ok".
+const char* stateOf(const BatchRun& run, double lostBound);
 
 /// \brief The largest value in each bin of a distance; thins a curve without hiding its peaks.
 struct BinnedMaxima {
