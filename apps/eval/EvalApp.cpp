@@ -28,13 +28,10 @@ const Guides kEvalGuides{
     {"rotation",
      {{"pole-eval rotation --config demo.ini --input scans.rawlog --every 10"},
       "Compare with another configuration, such as paper/kitti.ini."}},
-    {"model",
-     {{"pole-eval model --drives monday.rawlog tuesday.rawlog --model my.json"},
-      "Simulate long drives with it: pole-simulate --config hdl32e.ini --set "
-      "simulation.detections=my.json --length 1000 --poles long.rawlog."}},
     {"sightings",
-     {{"pole-eval sightings --poles monday.rawlog --json sightings.json"},
-      "Fit a model of detections to such drives: pole-eval model --help."}},
+     {{"pole-eval sightings --poles monday.rawlog --output sightings.csv"},
+      "A model of detections is fitted to the tables of several drives: see "
+      "share/experiments/detection-model.sh in the sources."}},
     {"mrpt-truth",
      {{"pole-eval mrpt-truth --truth tuesday.tum --output truth.txt"},
       "Name it in the settings of pf-localization: ground_truth_path_file = truth.txt."}},
@@ -72,11 +69,11 @@ int evalMain(int argc, const char* const* argv) {
   CommandLine line("pole-eval", "Scores pole maps, trajectories, extractors and localization.",
                    kEvalGuides);
   std::vector<Subcommand> commands;
-  for (const auto command : {mapCommand, trajectoryCommand, detectionsCommand, repeatabilityCommand,
-                             rotationCommand, mrptTruthCommand, motionCommand, consistencyCommand})
+  for (const auto command :
+       {mapCommand, trajectoryCommand, detectionsCommand, repeatabilityCommand, rotationCommand,
+        mrptTruthCommand, motionCommand, consistencyCommand, sightingsCommand, featuresCommand})
     commands.push_back(command(line.cli()));
-  for (const auto list : {trialCommands, modelCommands})
-    for (Subcommand& command : list(line.cli())) commands.push_back(std::move(command));
+  for (Subcommand& command : trialCommands(line.cli())) commands.push_back(std::move(command));
   return line.run(argc, argv, commands);
 }
 

@@ -19,8 +19,9 @@ Subcommand rotationCommand(CLI::App& program);
 Subcommand mrptTruthCommand(CLI::App& program);
 Subcommand motionCommand(CLI::App& program);
 Subcommand consistencyCommand(CLI::App& program);
+Subcommand sightingsCommand(CLI::App& program);
+Subcommand featuresCommand(CLI::App& program);
 std::vector<Subcommand> trialCommands(CLI::App& program);  ///< `global`, `starts`, `faults`
-std::vector<Subcommand> modelCommands(CLI::App& program);  ///< `model`, `sightings`, `features`
 /// @}
 
 /// \brief The program. \return An ExitCode.

@@ -2,16 +2,22 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <memory>
+#include <sstream>
 #include <unordered_map>
 
+#include "cli/Outputs.h"
 #include "core/common/Deskew.h"
 #include "core/common/Transform.h"
 #include "core/evaluation/MultiScanLabels.h"
 #include "core/extraction/CovarianceScale.h"
 #include "core/extraction/scan_line/ScanLineExtractor.h"
+#include "eval/EvalApp.h"
+#include "import/DatasetImport.h"
 #include "io/dataset/LabelledScans.h"
 #include "io/dataset/ScanFolder.h"
 #include "io/file/AtomicFile.h"
+#include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -234,6 +240,13 @@ void requireOwnFrame(const SensorOptions& sensor) {
         "upside_down and origin");
 }
 
+std::string summaryText(const FeaturesSummary& s) {
+  std::ostringstream out;
+  out << "scans " << s.scans << ", candidates: " << s.poles << " poles, " << s.others << " others, "
+      << s.unsure << " unsure (left out)\n";
+  return out.str();
+}
+
 }  // namespace
 
 FeaturesSummary writeFeatures(const FeaturesOptions& options, const AllSettings& settings) {
@@ -258,6 +271,33 @@ FeaturesSummary writeFeatures(const FeaturesOptions& options, const AllSettings&
   }
   file.commit();
   return summary;
+}
+
+Subcommand featuresCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "features", "Writes the features of the candidates of a drive, with labels");
+  const auto options = std::make_shared<FeaturesOptions>();
+  const auto config = std::make_shared<std::string>();
+  const auto pose = std::make_shared<std::string>("0 0 0 0 0 0");
+  const auto set = std::make_shared<std::vector<std::string>>();
+  addConfigOption(cli, *config)->required();
+  addSetOption(cli, *set);
+  addFolder(cli, "--scans", options->scans,
+            "Folder with velodyne/*.bin or *.pcd, and poses.txt; in the LiDAR's own frame")
+      ->required();
+  cli.add_option("--sensor-pose", *pose, "Frame of the clouds on the robot, m and deg")
+      ->type_name("'X Y Z YAW_DEG PITCH_DEG ROLL_DEG'")
+      ->default_str("0")
+      ->check(
+          [](const std::string& text) { return io::problemOf([&] { parseSensorPose(text); }); });
+  addFile(cli, "--poles", options->poles,
+          "True poles (CSV: id, x, y, radius, top); without them, all scans together label the "
+          "candidates");
+  addOutput(cli, "--output", options->output, "Table to write (CSV)")->required();
+  return {&cli, [options, config, pose, set](bool) {
+            options->T_robot_sensor = parseSensorPose(*pose);
+            return summaryText(writeFeatures(*options, loadSettings(*config, *set)));
+          }};
 }
 
 }  // namespace polemcl::apps

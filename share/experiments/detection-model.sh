@@ -4,9 +4,10 @@
 # Usage: share/experiments/detection-model.sh OUT [SEED...]
 #   OUT   gets hdl32e.json, the drives, result.json and table.txt; existing drives are used again
 #   SEED  of the worlds to compare on, 501 to 503 unless given; the model is fitted to 101 to 103
-# Per drive: pole-eval sightings and repeatability. Map of day 0, one to one at 0.5 m against all true
-# poles; localization on day 1 in it, 3 runs of 1000 particles, odometry with 2 % noise: both cast, or both
-# drawn. Programs: build/bin, or POLEMCL_BIN. Needs jq, 4 minutes on 2 cores.
+# Per drive: fit_detections.py --summary and pole-eval repeatability. Map of day 0, one to one at 0.5 m
+# against all true poles; localization on day 1 in it, 3 runs of 1000 particles, odometry with 2 % noise:
+# both cast, or both drawn. Programs: build/bin, or POLEMCL_BIN. Needs jq and python3-scipy, 4 minutes on 2
+# cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -17,6 +18,7 @@ make_out "$1"
 shift
 [ $# -gt 0 ] || set -- 501 502 503
 find_tools jq
+find_modules scipy
 find_programs pole-simulate pole-map pole-localize pole-eval
 
 # drive NAME SEED DAY MODEL: simulates NAME.rawlog, cast when MODEL is empty.
@@ -27,11 +29,22 @@ drive() {
   "$bin/pole-simulate" --quiet --config "$out/$1.ini" --poles "$out/$1.rawlog"
 }
 
+# see NAME: NAME.csv, what the scans of a drive detect.
+see() {
+  "$bin/pole-eval" sightings --quiet --poles "$out/$1.rawlog" --output "$out/$1.csv" >/dev/null
+}
+
+# fit_detections OPTION...: the script that fits models and sums up tables.
+fit_detections() {
+  /usr/bin/python3 "$top/share/experiments/fit_detections.py" "$@"
+}
+
 # judge KIND SEED: metrics of both days' drives, of the map and of the localization, in one object.
 judge() {
   for day in 0 1; do
     name=$1-$2-$day
-    "$bin/pole-eval" sightings --quiet --poles "$out/$name.rawlog" --json "$out/$name.json"
+    see "$name"
+    fit_detections "$out/$name.csv" --summary "$out/$name.json"
     "$bin/pole-eval" repeatability --quiet --poles "$out/$name.rawlog" --truth "$out/$name.tum" \
       --json "$out/$name-repeated.json"
   done
@@ -57,11 +70,12 @@ fitted=
 for seed in 101 102 103; do
   for day in 0 1; do
     drive "cast-$seed-$day" "$seed" "$day" ""
-    fitted="$fitted $out/cast-$seed-$day.rawlog"
+    see "cast-$seed-$day"
+    fitted="$fitted $out/cast-$seed-$day.csv"
   done
 done
 # shellcheck disable=SC2086
-"$bin/pole-eval" model --drives $fitted --model "$out/hdl32e.json"
+fit_detections $fitted --model "$out/hdl32e.json"
 
 for seed in "$@"; do
   for day in 0 1; do

@@ -126,8 +126,9 @@ TEST(SensorModelsOfDetections, AModelServesTheBeamsItWasFittedFor) {
   };
   const Outcome same = simulate("12 4 -2 -8");
   EXPECT_EQ(same.code, 0) << same.err;
-  expectFailure(simulate("12 4 -2 -9"), {"m.json", "table of 4 beams from 12 to -8 deg",
-                                         "table of 4 beams from 12 to -9 deg", "pole-eval model"});
+  expectFailure(simulate("12 4 -2 -9"),
+                {"m.json", "table of 4 beams from 12 to -8 deg",
+                 "table of 4 beams from 12 to -9 deg", "fit_detections.py"});
 }
 
 }  // namespace polemcl::test_sensor_models

@@ -4,6 +4,7 @@
 #include "extract/ExtractApp.h"
 #include "import/DatasetImport.h"
 #include "io/data/Trajectory.h"
+#include "io/file/CsvTable.h"
 #include "io/map/PoleTables.h"
 #include "mrpt/rawlog/PoleSequence.h"
 #include "simulate/SimulateApp.h"
@@ -143,7 +144,7 @@ TEST_F(SimulatedPoles, RefusesAModelOfAnotherLidar) {
             "[sensor]\nmodel = vlp16\nheight_m = 1.0\n[simulation]\n"
             "detections = " +
                 s_model + "\n");
-  expectFailure(run("p.rawlog"), {"hdl32e.json", "hdl32e", "vlp16", "pole-eval model"});
+  expectFailure(run("p.rawlog"), {"hdl32e.json", "hdl32e", "vlp16", "fit_detections.py"});
   EXPECT_EQ(names(folder.path()), std::vector<std::string>{"street.ini"});
 }
 
@@ -167,29 +168,29 @@ TEST_F(SimulatedPoles, WantsToKnowWhatToWrite) {
   expectUsageError(runProgram(simulateMain, {"--config", at("street.ini")}));
 }
 
-TEST_F(SimulatedPoles, GiveAModelAndFiguresWithoutTheirScans) {
-  configure("detections = " + s_model + "\n", "length_m = 150\n");
-  ASSERT_EQ(run("a0.rawlog").code, 0);
-  ASSERT_EQ(run("a1.rawlog", {"--day", "1"}).code, 0);
-  const Outcome fitted = runProgram(
-      evalMain, {"model", "--drives", at("a0.rawlog"), at("a1.rawlog"), "--model", at("m.json")});
-  EXPECT_EQ(fitted.code, 0) << fitted.err;
-  EXPECT_NE(fitted.out.find("hdl32e"), std::string::npos) << fitted.out;
-  configure("detections = " + at("m.json") + "\n");
-  EXPECT_EQ(run("b.rawlog").code, 0);
-  const Outcome seen =
-      runProgram(evalMain, {"sightings", "--poles", at("a0.rawlog"), "--json", at("a0.json")});
+TEST_F(SimulatedPoles, GiveATableOfSightingsWithoutTheirScans) {
+  configure("detections = " + s_model + "\n");
+  ASSERT_EQ(run("a.rawlog").code, 0);
+  const auto sightings = [&](const std::string& rawlog) {
+    return runProgram(evalMain, {"sightings", "--poles", at(rawlog), "--output", at("a.csv")});
+  };
+  const Outcome seen = sightings("a.rawlog");
   EXPECT_EQ(seen.code, 0) << seen.err;
-  EXPECT_NE(readText(folder / "a0.json").find("\"found_run_m\""), std::string::npos);
+  const io::CsvTable table(folder / "a.csv");
+  const std::size_t points = table.column("points");
+  std::size_t detections = 0, found = 0;
+  for (const PoleScan& scan : read("a.rawlog").frames) detections += scan.poles_robot.size();
+  for (std::size_t i = 0; i < table.rows(); ++i) found += !table.text(i, points).empty();
+  EXPECT_EQ(found, detections);
+  EXPECT_GT(table.rows(), detections);
+  EXPECT_HAS(readText(folder / "a.csv"), "# sensor hdl32e\n# height_m 1\n");
 
-  expectFailure(
-      runProgram(evalMain, {"model", "--drives", at("a0.rawlog"), "--model", at("m.json")}),
-      {"--drives", "1 are given", "two for each street"});
-  fs::copy(folder / "a0.rawlog", folder / "b.rawlog", fs::copy_options::overwrite_existing);
-  expectFailure(runProgram(evalMain, {"sightings", "--poles", at("b.rawlog")}),
-                {"b.rawlog", "scans"});
-  fs::remove(folder / "b_config.ini");
-  expectFailure(runProgram(evalMain, {"sightings", "--poles", at("b.rawlog")}), {"b_config.ini"});
+  fs::copy(folder / "a.rawlog", folder / "b.rawlog");
+  expectFailure(sightings("b.rawlog"), {"b_config.ini"});
+  configure("scans = 3\ndetections = " + s_model + "\n");
+  ASSERT_EQ(run("b.rawlog").code, 0);
+  fs::copy(folder / "a.rawlog", folder / "b.rawlog", fs::copy_options::overwrite_existing);
+  expectFailure(sightings("b.rawlog"), {"b.rawlog", "scans"});
 }
 
 }  // namespace polemcl::test_simulated_poles

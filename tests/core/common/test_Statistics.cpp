@@ -28,6 +28,8 @@ TEST(Statistics, NormalQuantilesAreThoseOfTheTables) {
   EXPECT_NEAR(normalQuantile(0.99), 2.3263478740408408, 3e-9);
   EXPECT_NEAR(normalQuantile(0.025), -1.9599639845400545, 3e-9);
   EXPECT_EQ(normalQuantile(0), normalQuantile(1e-9));
+  for (double x = -4; x <= 4; x += 0.05)
+    EXPECT_NEAR(normalQuantile(0.5 * std::erfc(-x * M_SQRT1_2)), x, 1e-6);
 }
 
 }  // namespace polemcl::test_statistics

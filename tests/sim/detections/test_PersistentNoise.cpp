@@ -36,14 +36,6 @@ double counted(const NoiseSpectrum& spectrum, double distance, bool sameDay) {
   EXPECT_NEAR(aa / 40000, 1, 0.03);
   return ab / std::sqrt(aa * bb);
 }
-/// Correlation between two positions of the sensor, on the same day or on two days.
-double correlation(const NoiseSpectrum& spectrum, double distance, bool sameDay) {
-  double sum = 0;
-  for (std::size_t k = 0; k < kNoiseReach.size(); ++k)
-    sum += (spectrum.always[k] + (sameDay ? spectrum.today[k] : 0)) *
-           noiseCorrelation(kNoiseReach[k], distance);
-  return sum;
-}
 }  // namespace
 
 TEST(PersistentNoise, WhiteIsWhatIsLeft) {
@@ -51,15 +43,19 @@ TEST(PersistentNoise, WhiteIsWhatIsLeft) {
   EXPECT_EQ(NoiseSpectrum().white(), 1);
 }
 
+// By noise_correlation() of share/experiments/fit_detections.py.
 TEST(PersistentNoise, CorrelatesAsItsSpectrumSays) {
-  for (const double distance : {0.0, 0.7, 3.0, 12.0})
-    for (const bool sameDay : {true, false})
-      EXPECT_NEAR(counted(mixed(), distance, sameDay), correlation(mixed(), distance, sameDay),
-                  0.02)
-          << distance << " m, same day " << sameDay;
-  EXPECT_NEAR(correlation(mixed(), 0, true), 0.8, 1e-9);
-  EXPECT_NEAR(correlation(mixed(), 0, false), 0.4, 1e-9);
-  EXPECT_NEAR(correlation(mixed(), 1000, true), 0.2, 1e-9);
+  struct Expected {
+    double distance, sameDay, otherDay;
+  };
+  for (const auto& [distance, sameDay, otherDay] : {Expected{0, 0.8, 0.4},
+                                                    {0.7, 0.76751, 0.375181},
+                                                    {3, 0.577639, 0.278822},
+                                                    {12, 0.307175, 0.131912},
+                                                    {1000, 0.2, 0.1}}) {
+    EXPECT_NEAR(counted(mixed(), distance, true), sameDay, 0.02) << distance << " m";
+    EXPECT_NEAR(counted(mixed(), distance, false), otherDay, 0.02) << distance << " m";
+  }
 }
 
 TEST(PersistentNoise, DependsOnNothingButItsSeedsAndThePlace) {
@@ -68,15 +64,6 @@ TEST(PersistentNoise, DependsOnNothingButItsSeedsAndThePlace) {
   persistentNoise(mixed(), {9, 9, 9}, 0, 0);
   EXPECT_EQ(persistentNoise(mixed(), seeds, 4.5, -8), first);
   EXPECT_NE(persistentNoise(mixed(), {1, 2, 4}, 4.5, -8), first);
-}
-
-TEST(PersistentNoise, FadesOverItsReach) {
-  EXPECT_EQ(noiseCorrelation(0, 500), 1);
-  for (const double reach : {1.5, 25.0}) {
-    EXPECT_NEAR(noiseCorrelation(reach, 0), 1, 1e-9);
-    EXPECT_GT(noiseCorrelation(reach, 0.1 * reach), 0.9);
-    EXPECT_NEAR(noiseCorrelation(reach, 3 * reach), 0, 1e-9);
-  }
 }
 
 }  // namespace polemcl::test_persistent_noise

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "sim/common/NormalDistribution.h"
+#include "core/common/Statistics.h"
 
 namespace polemcl::sim {
 namespace {
@@ -103,21 +103,6 @@ double valueAt(const Quantiles& quantiles, double z) {
   while (scores[i] < z) ++i;
   const double share = (z - scores[i - 1]) / (scores[i] - scores[i - 1]);
   return quantiles[i - 1] + share * (quantiles[i] - quantiles[i - 1]);
-}
-
-double scoreOf(const Quantiles& quantiles, double value) {
-  const auto& scores = levelScores();
-  const auto zAt = [&](bool first) {
-    const auto place = first ? std::lower_bound(quantiles.begin(), quantiles.end(), value)
-                             : std::upper_bound(quantiles.begin(), quantiles.end(), value);
-    const auto i = static_cast<std::size_t>(place - quantiles.begin());
-    if (i == 0) return scores.front();
-    if (i == quantiles.size()) return scores.back();
-    const double width = quantiles[i] - quantiles[i - 1];
-    const double share = width > 0 ? (value - quantiles[i - 1]) / width : 0;
-    return scores[i - 1] + share * (scores[i] - scores[i - 1]);
-  };
-  return 0.5 * (zAt(true) + zAt(false));
 }
 
 double DetectionModel::detectionScore(DetectionClass c, double range) const {

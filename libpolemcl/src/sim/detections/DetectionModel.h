@@ -46,8 +46,6 @@ using Quantiles = std::array<double, kQuantileLevels.size()>;
 /// \brief The value at a standard normal number z: linear in z between the levels, constant
 /// outside.
 double valueAt(const Quantiles& quantiles, double z);
-/// \brief The z of a value; if several z have this value, the middle one.
-double scoreOf(const Quantiles& quantiles, double value);
 
 /// \brief Model of one class. Functions of range are given at the model's ranges, linear between
 /// them.
@@ -106,9 +104,5 @@ struct DetectionModel {
 /// \brief Reads a model. \throws Error with file and key: not readable, not JSON, other format,
 /// missing or unknown key, value of the wrong type or out of range.
 DetectionModel readDetectionModel(const std::filesystem::path& file);
-
-/// \brief Writes the model atomically, numbers with three digits. \throws Error when it cannot be
-/// written.
-void writeDetectionModel(const std::filesystem::path& file, const DetectionModel& model);
 
 }  // namespace polemcl::sim

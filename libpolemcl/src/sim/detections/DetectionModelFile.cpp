@@ -1,11 +1,8 @@
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "io/file/AtomicFile.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/ParsedJson.h"
-#include "io/file/TextFile.h"
 #include "sim/detections/DetectionModel.h"
 
 namespace polemcl::sim {
@@ -153,85 +150,6 @@ DetectionModel fromJson(const Json& json, const std::string& where) {
   return model;
 }
 
-double roundedNumber(double value) {
-  return std::strtod(io::significant(value, 3).c_str(), nullptr);
-}
-
-template <class List>
-Json numbers(const List& values) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(roundedNumber(value));
-  return list;
-}
-
-Json json(const NoiseSpectrum& spectrum) {
-  return {{"always", numbers(spectrum.always)}, {"today", numbers(spectrum.today)}};
-}
-
-Json json(const ClassModel& model) {
-  Json result = Json::object();
-  if (!model.detected.empty()) result["detected"] = numbers(model.detected);
-  for (int r = 0; r < kReported; ++r) {
-    Json rows = Json::array();
-    for (const Quantiles& row : model.reported[r]) rows.push_back(numbers(row));
-    result[name(static_cast<Reported>(r))] = rows;
-  }
-  return result;
-}
-
-Json toJson(const DetectionModel& model) {
-  Json persistence{{"poles", json(model.poleVisibility)},
-                   {"clutter", json(model.clutterVisibility)}};
-  for (int r = 0; r < kReported; ++r)
-    persistence[name(static_cast<Reported>(r))] = json(model.noise[r]);
-  Json classes = Json::object();
-  for (int c = 0; c < kDetectionClasses; ++c)
-    classes[name(static_cast<DetectionClass>(c))] = json(model.classes[c]);
-  return {{"format", kFormat},
-          {"fitted_on", model.fittedOn},
-          {"sensor", model.sensor},
-          {"height_m", roundedNumber(model.height)},
-          {"max_range_m", roundedNumber(model.maxRange)},
-          {"points_per_scan", model.points},
-          {"behind_houses", roundedNumber(model.behindHouses)},
-          {"error_exponent", roundedNumber(model.errorExponent)},
-          {"detected_range_m", numbers(model.detectedRange)},
-          {"reported_range_m", numbers(model.reportedRange)},
-          {"levels", Json(kQuantileLevels)},
-          {"reach_m", Json(kNoiseReach)},
-          {"clutter_per_m",
-           {{"always", roundedNumber(model.clutterAlways)},
-            {"today", roundedNumber(model.clutterToday)}}},
-          {"clutter_lateral_m", numbers(model.clutterLateral)},
-          {"passing_per_scan", roundedNumber(model.passing)},
-          {"passing_range_m", numbers(model.passingRange)},
-          {"season",
-           {{"snow", numbers(model.season.snow)},
-            {"bare", numbers(model.season.bare)},
-            {"fence", roundedNumber(model.season.fence)},
-            {"site_clutter_per_m", roundedNumber(model.season.siteClutter)}}},
-          {"persistence", persistence},
-          {"classes", classes}};
-}
-
-/// Objects over several lines, lists of numbers on one line, for readability.
-void print(std::ostream& out, const Json& value, const std::string& indent) {
-  const bool nested = value.is_object() || (value.is_array() && value.front().is_array());
-  if (!nested) {
-    out << value.dump();
-    return;
-  }
-  out << (value.is_object() ? "{" : "[");
-  bool first = true;
-  for (const auto& [key, element] : value.items()) {
-    out << (first ? "\n" : ",\n") << indent << "  ";
-    if (value.is_object()) out << Json(key).dump() << ": ";
-    print(out, element, indent + "  ");
-    first = false;
-  }
-  out << '\n' << indent << (value.is_object() ? "}" : "]");
-}
-
 }  // namespace
 
 DetectionModel readDetectionModel(const std::filesystem::path& file) {
@@ -245,13 +163,6 @@ DetectionModel readDetectionModel(const std::filesystem::path& file) {
   DetectionModel model = fromJson(parsed(), file.string() + ": ");
   io::located(file.string() + ": ", [&] { model.validate(); });
   return model;
-}
-
-void writeDetectionModel(const std::filesystem::path& file, const DetectionModel& model) {
-  io::AtomicFile out(file);
-  print(out.stream(), toJson(model), "");
-  out.stream() << '\n';
-  out.commit();
 }
 
 }  // namespace polemcl::sim

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Statistics.h"
 #include "core/common/Transform.h"
 #include "core/extraction/VisibilityRange.h"
-#include "sim/common/NormalDistribution.h"
 #include "sim/common/Random.h"
 #include "sim/world/Season.h"
 
@@ -105,11 +105,11 @@ DetectionSampler::DetectionSampler(DetectionModel model, const World& world,
   constexpr double kHeights = 0.3;
   if (m_model.sensor != options.sensor)
     throw Error("the model is for a " + m_model.sensor + ", and [sensor] model is " +
-                options.sensor + "; fit one for it (pole-eval model)");
+                options.sensor + "; fit one for it (share/experiments/fit_detections.py)");
   if (std::abs(m_model.height - options.height) > kHeights)
     throw Error("the model is for a LiDAR " + std::to_string(m_model.height) +
                 " m above ground, and [sensor] height_m is " + std::to_string(options.height) +
-                "; fit one for that height (pole-eval model)");
+                "; fit one for that height (share/experiments/fit_detections.py)");
   addPoles(world);
   m_clutter = placeClutter(m_model, world, options.falseFactor);
   for (const ClutterObject& object : m_clutter)

@@ -59,25 +59,4 @@ double persistentNoise(const NoiseSpectrum& spectrum, const NoiseSeeds& seeds, d
   return sum + std::sqrt(spectrum.white()) * normalFromHash(hash(seeds.scan));
 }
 
-double noiseCorrelation(double reach, double distance) {
-  if (reach <= 0) return 1;
-  constexpr int kSteps = 12;
-  double sum = 0;
-  for (int turn = 0; turn < kSteps; ++turn) {
-    const double angle = M_PI / 2 * (turn + 0.5) / kSteps;
-    const double dx = distance / reach * std::cos(angle), dy = distance / reach * std::sin(angle);
-    for (int i = 0; i < kSteps; ++i)
-      for (int j = 0; j < kSteps; ++j) {
-        const double x = (i + 0.5) / kSteps, y = (j + 0.5) / kSteps;
-        const Corners here(x, y), there(x + dx, y + dy);
-        for (int a = 0; a < 4; ++a)
-          for (int b = 0; b < 4; ++b)
-            if (here.column + (a & 1) == there.column + (b & 1) &&
-                here.row + (a >> 1) == there.row + (b >> 1))
-              sum += here.weight[a] * there.weight[b];
-      }
-  }
-  return sum / (kSteps * kSteps * kSteps);
-}
-
 }  // namespace polemcl::sim

@@ -28,8 +28,4 @@ struct NoiseSeeds {
 /// on hashes, so it can be evaluated in any order.
 double persistentNoise(const NoiseSpectrum& spectrum, const NoiseSeeds& seeds, double x, double y);
 
-/// \brief Correlation of one part between places at this distance, averaged over directions; 1 for
-/// reach 0.
-double noiseCorrelation(double reach, double distance);
-
 }  // namespace polemcl::sim
