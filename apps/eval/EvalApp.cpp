@@ -35,9 +35,6 @@ const Guides kEvalGuides{
     {"sightings",
      {{"pole-eval sightings --poles monday.rawlog --json sightings.json"},
       "Fit a model of detections to such drives: pole-eval model --help."}},
-    {"mrpt-truth",
-     {{"pole-eval mrpt-truth --truth tuesday.tum --output truth.txt"},
-      "Name it in the settings of pf-localization: ground_truth_path_file = truth.txt."}},
     {"motion",
      {{"pole-eval motion --poles monday.rawlog --truth monday.tum --every 4"},
       "If the poses disagree, mend the times or the poses of the dataset before you build a "
@@ -73,7 +70,7 @@ int evalMain(int argc, const char* const* argv) {
                    kEvalGuides);
   std::vector<Subcommand> commands;
   for (const auto command : {mapCommand, trajectoryCommand, detectionsCommand, repeatabilityCommand,
-                             rotationCommand, mrptTruthCommand, motionCommand, consistencyCommand})
+                             rotationCommand, motionCommand, consistencyCommand})
     commands.push_back(command(line.cli()));
   for (const auto list : {trialCommands, modelCommands})
     for (Subcommand& command : list(line.cli())) commands.push_back(std::move(command));
