@@ -3,13 +3,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cli/MapPlane.h"
+#include "cli/Projections.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/ParsedJson.h"
 
-namespace polemcl {
+namespace polemcl::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -257,4 +257,4 @@ io::PoleMapData readGeoJson(const std::filesystem::path& file,
   return map;
 }
 
-}  // namespace polemcl
+}  // namespace polemcl::apps

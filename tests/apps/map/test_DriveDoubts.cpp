@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "cli/MapPlane.h"
+#include "cli/Projections.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"

@@ -12,7 +12,7 @@
 
 namespace polemcl::test_geo_json {
 
-using namespace polemcl;
+using namespace polemcl::apps;
 
 namespace {
 

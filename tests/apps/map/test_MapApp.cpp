@@ -1,5 +1,5 @@
 #include <polemcl/core/common/Types.h>
-#include "cli/MapPlane.h"
+#include "cli/Projections.h"
 #include "cli/RunRecords.h"
 #include "extract/ExtractApp.h"
 #include "io/data/GnssCsv.h"
