@@ -151,15 +151,6 @@ void writeResults(RunFolder& folder, const LocalizeFacts& facts, const AllSettin
   folder.commit();
 }
 
-/// A bag that cannot be written is a failure, unless there is one already.
-void keep(RunBag& bag, std::string& failure) {
-  try {
-    bag.commit();
-  } catch (const Error& error) {
-    if (failure.empty()) failure = error.what();
-  }
-}
-
 void warnOfLeftovers(const RunFolder& folder) {
   for (const std::filesystem::path& left : folder.leftovers())
     std::cerr << warningLine(
