@@ -19,7 +19,7 @@
 #include "map/MapUpdateApp.h"
 #include "mrpt/drawing/SceneParts.h"
 #include "report/picture/Pictures.h"
-#include "report/scene/DiffScene.h"
+#include "report/scene/MapScene.h"
 
 namespace polemcl::apps {
 namespace {
