@@ -32,9 +32,6 @@ const Guides kEvalGuides{
      {{"pole-eval sightings --poles monday.rawlog --output sightings.csv"},
       "A model of detections is fitted to the tables of several drives: see "
       "share/experiments/detection-model.sh in the sources."}},
-    {"mrpt-truth",
-     {{"pole-eval mrpt-truth --truth tuesday.tum --output truth.txt"},
-      "Name it in the settings of pf-localization: ground_truth_path_file = truth.txt."}},
     {"motion",
      {{"pole-eval motion --poles monday.rawlog --truth monday.tum --every 4"},
       "If the poses disagree, mend the times or the poses of the dataset before you build a "
@@ -71,7 +68,7 @@ int evalMain(int argc, const char* const* argv) {
   std::vector<Subcommand> commands;
   for (const auto command :
        {mapCommand, trajectoryCommand, detectionsCommand, repeatabilityCommand, rotationCommand,
-        mrptTruthCommand, motionCommand, consistencyCommand, sightingsCommand, featuresCommand})
+        motionCommand, consistencyCommand, sightingsCommand, featuresCommand})
     commands.push_back(command(line.cli()));
   for (Subcommand& command : trialCommands(line.cli())) commands.push_back(std::move(command));
   return line.run(argc, argv, commands);

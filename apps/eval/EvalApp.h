@@ -16,7 +16,6 @@ Subcommand trajectoryCommand(CLI::App& program);
 Subcommand detectionsCommand(CLI::App& program);
 Subcommand repeatabilityCommand(CLI::App& program);
 Subcommand rotationCommand(CLI::App& program);
-Subcommand mrptTruthCommand(CLI::App& program);
 Subcommand motionCommand(CLI::App& program);
 Subcommand consistencyCommand(CLI::App& program);
 Subcommand sightingsCommand(CLI::App& program);

@@ -70,15 +70,6 @@ class GapWatch {
   bool m_isBusy = false, m_isWarned = false;
 };
 
-/// A record that cannot be kept is a failure, unless there is one already.
-void keep(RecordedEntries& record, std::string& failure) {
-  try {
-    record.commit();
-  } catch (const Error& error) {
-    if (failure.empty()) failure = error.what();
-  }
-}
-
 }  // namespace
 
 LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptions& options,

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include <polemcl/core/common/Types.h>
 #include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
@@ -37,5 +38,16 @@ struct LiveDriveResult {
 /// \throws Error as startSensors() and streamPoles(); the failure of a sensor before any scan.
 LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptions& options,
                               const std::function<void(const ReadScan&)>& consume);
+
+/// \brief Commits what came of a drive. That it cannot be written is a failure, unless there is one
+/// already.
+template <class Record>
+void keep(Record& record, std::string& failure) {
+  try {
+    record.commit();
+  } catch (const Error& error) {
+    if (failure.empty()) failure = error.what();
+  }
+}
 
 }  // namespace polemcl::apps

@@ -1,5 +1,6 @@
 #include "localize/LocalizeApp.h"
 
+#include <cmath>
 #include <iostream>
 #include <mutex>
 
@@ -22,11 +23,44 @@
 #include "localize/RunBag.h"
 #include "localize/RunFolder.h"
 #include "localize/RunView.h"
-#include "localize/TurnCheck.h"
+#include "mrpt/observation/ObservationPoints.h"
 
 namespace polemcl::apps {
 
 namespace {
+
+/// Same times in most directions; close to the cut, small differences make a whole turn.
+bool agree(const ScanTiming& set, const ScanTiming& stated) {
+  constexpr double tolerance = 0.01;  // s
+  constexpr int directions = 16;
+  int apart = 0;
+  for (int i = 0; i < directions; ++i) {
+    const double azimuth = 2 * M_PI * i / directions;
+    apart += std::abs(set.offset(azimuth) - set.clock - stated.offset(azimuth)) > tolerance;
+  }
+  return 2 * apart < directions;
+}
+
+/// A warning for each LiDAR of a scan that states its measuring times where `turn` and the
+/// keys beside it set others. The settings win, so the poles are then moved wrongly.
+std::vector<std::string> turnWarnings(const ReadScan& scan, const SequenceOptions& options) {
+  std::vector<std::string> warnings;
+  for (const auto& source : scan.sources) {
+    const auto lidar = options.vehicle.indexOf(source->sensorLabel);
+    const SensorOptions& sensor =
+        lidar ? options.vehicle.lidars[*lidar].sensor : options.extraction.sensor;
+    if (sensor.timing.turn == Turn::automatic) continue;
+    ObservationPoints points(sensor);
+    const ObservationPoints::Loan loan(points);
+    points.read(*source);
+    if (!points.timing() || agree(sensor.timing, *points.timing())) continue;
+    warnings.push_back("[sensor" + (lidar ? ":" + source->sensorLabel : "") + "] turn = " +
+                       name(sensor.timing.turn) + " and the keys beside it contradict " +
+                       "the times that the LiDAR " + source->sensorLabel +
+                       " states: poses of a moving robot get worse; set turn = auto");
+  }
+  return warnings;
+}
 
 /// X,Y,YAW_DEG,RADIUS,HEADING_DEG of the command line.
 void setStart(StartOptions& start, const std::vector<double>& numbers) {
@@ -149,15 +183,6 @@ void writeResults(RunFolder& folder, const LocalizeFacts& facts, const AllSettin
   writeJson(folder.staged("timings.json"), timingsJson(result.timings));
   writeJson(folder.staged("summary.json"), makeSummary(facts, result));
   folder.commit();
-}
-
-/// A bag that cannot be written is a failure, unless there is one already.
-void keep(RunBag& bag, std::string& failure) {
-  try {
-    bag.commit();
-  } catch (const Error& error) {
-    if (failure.empty()) failure = error.what();
-  }
 }
 
 void warnOfLeftovers(const RunFolder& folder) {

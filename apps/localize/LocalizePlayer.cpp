@@ -3,8 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "cli/MapPlane.h"
 #include "cli/Progress.h"
+#include "cli/Projections.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "core/global_localization/GlobalLocalizer.h"

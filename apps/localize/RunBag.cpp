@@ -6,7 +6,6 @@
 #include "core/common/Angles.h"
 #include "io/rosbag/RosMessages.h"
 #include "io/rosbag/RosResults.h"
-#include "io/rosbag/RosSchemas.h"
 
 namespace polemcl::apps {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/MapPlane.h"
+#include "cli/Projections.h"
 #include "core/common/Statistics.h"
 #include "io/data/GnssCsv.h"
 #include "io/file/TextFile.h"

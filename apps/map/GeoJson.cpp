@@ -3,13 +3,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cli/MapPlane.h"
+#include "cli/Projections.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/ParsedJson.h"
 
-namespace polemcl {
+namespace polemcl::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -44,6 +44,7 @@ class Feature {
  public:
   Feature(const Json& json, std::string where) : m_json(json), m_where(std::move(where)) {}
 
+  const std::string& where() const { return m_where; }
   bool isPoint() const {
     if (!m_json.is_object() || !m_json.contains("geometry")) fail("no feature with a geometry");
     const Json& geometry = m_json["geometry"];
@@ -164,6 +165,20 @@ Json parsed(const std::filesystem::path& file) {
   return json;
 }
 
+/// Calls take(feature) for each point. \return The number of other features.
+template <class Take>
+std::size_t forEachPoint(const Json& json, const std::filesystem::path& file, const Take& take) {
+  std::size_t number = 0, others = 0;
+  for (const Json& entry : json["features"]) {
+    const Feature feature(entry, file.string() + ": feature " + std::to_string(number++) + ": ");
+    if (feature.isPoint())
+      take(feature);
+    else
+      ++others;
+  }
+  return others;
+}
+
 std::map<std::string, std::string> infoOf(const Json& json, const std::string& where) {
   std::map<std::string, std::string> info;
   const auto own = json.find("polemcl");
@@ -214,18 +229,10 @@ std::string othersText(std::size_t others) {
 }
 
 std::vector<GeoJsonPoint> readGeoJsonPoints(const std::filesystem::path& file, std::size_t& left) {
-  const Json json = parsed(file);
   std::vector<GeoJsonPoint> points;
-  std::size_t number = 0;
-  left = 0;
-  for (const Json& entry : json["features"]) {
-    const std::string where = file.string() + ": feature " + std::to_string(number++) + ": ";
-    const Feature feature(entry, where);
-    if (feature.isPoint())
-      points.push_back({feature.coordinates(), feature.properties(), where});
-    else
-      ++left;
-  }
+  left = forEachPoint(parsed(file), file, [&](const Feature& feature) {
+    points.push_back({feature.coordinates(), feature.properties(), feature.where()});
+  });
   return points;
 }
 
@@ -239,22 +246,16 @@ io::PoleMapData readGeoJson(const std::filesystem::path& file,
   const auto origin = io::datumOf(map.info, where);
   if (!origin) throw Error(where + "no datum in it; say where the map's origin is with --datum");
   const MapPlane plane(*origin);
-  std::size_t others = 0, number = 0;
   bool hasHistories = false;
-  for (const Json& entry : json["features"]) {
-    const Feature feature(entry, where + "feature " + std::to_string(number++) + ": ");
-    if (!feature.isPoint()) {
-      ++others;
-      continue;
-    }
+  const std::size_t others = forEachPoint(json, file, [&](const Feature& feature) {
     map.poles.push_back(poleOf(feature, plane));
     map.histories.push_back(historyOf(feature, map.poles.back()));
     hasHistories |= feature.has("existence");
-  }
+  });
   if (map.poles.empty()) throw Error(where + "no point in it" + othersText(others));
   if (!hasHistories) map.histories.clear();
   if (left) *left = others;
   return map;
 }
 
-}  // namespace polemcl
+}  // namespace polemcl::apps

@@ -12,7 +12,7 @@
 #include "io/map/Datum.h"
 #include "io/map/PoleMapFile.h"
 
-namespace polemcl {
+namespace polemcl::apps {
 
 /// \brief Writes the poles on the map (no candidates) as a FeatureCollection of points, atomically.
 ///
@@ -51,4 +51,4 @@ struct GeoJsonPoint {
 /// \throws Error naming the feature: not GeoJSON, no numbers as coordinates.
 std::vector<GeoJsonPoint> readGeoJsonPoints(const std::filesystem::path& file, std::size_t& left);
 
-}  // namespace polemcl
+}  // namespace polemcl::apps

@@ -1,16 +1,25 @@
 #include "map/MapApp.h"
 
 #include <memory>
+#include <sstream>
 
 #include "cli/CommandLine.h"
 #include "cli/Messages.h"
 #include "cli/Outputs.h"
 #include "cli/Progress.h"
+#include "cli/Version.h"
+#include "core/mapping/MapDiff.h"
+#include "io/file/AtomicFile.h"
+#include "io/file/TextFile.h"
+#include "io/map/Datum.h"
+#include "io/map/PoleMapFile.h"
 #include "map/MapBuildReport.h"
-#include "map/MapConvertApp.h"
-#include "map/MapDiffApp.h"
+#include "map/MapFiles.h"
 #include "map/MapImportApp.h"
 #include "map/MapUpdateApp.h"
+#include "mrpt/drawing/SceneParts.h"
+#include "report/picture/Pictures.h"
+#include "report/scene/MapScene.h"
 
 namespace polemcl::apps {
 namespace {
@@ -144,43 +153,112 @@ Subcommand updateCommand(CLI::App& program) {
   return command;
 }
 
+std::string place(const MapPole& pole, const char* between) {
+  return io::fixed(pole.x, 3) + between + io::fixed(pole.y, 3);
+}
+
+/// The changes as a table: places in the map frame, m. A vanished pole has its place in x, y; the
+/// last three columns are empty unless the pole moved.
+void writeCsv(const MapDiff& diff, const std::filesystem::path& file) {
+  io::AtomicFile output(file);
+  output.stream() << "change,x,y,x_before,y_before,distance\n";
+  for (const MapPole& pole : diff.appeared)
+    output.stream() << "new," << place(pole, ",") << ",,,\n";
+  for (const MapPole& pole : diff.vanished)
+    output.stream() << "vanished," << place(pole, ",") << ",,,\n";
+  for (const MapDiff::Pair& pair : diff.moved)
+    output.stream() << "moved," << place(pair.after, ",") << ',' << place(pair.before, ",") << ','
+                    << io::fixed(pair.distance, 3) << '\n';
+  output.commit();
+}
+
+/// One line a change, then the counts.
+std::string summaryText(const MapDiff& diff) {
+  std::ostringstream out;
+  for (const MapPole& pole : diff.appeared) out << "new       " << place(pole, " ") << '\n';
+  for (const MapPole& pole : diff.vanished) out << "vanished  " << place(pole, " ") << '\n';
+  for (const MapDiff::Pair& pair : diff.moved)
+    out << "moved     " << place(pair.before, " ") << " -> " << place(pair.after, " ") << " ("
+        << io::fixed(pair.distance, 2) << " m)\n";
+  out << diff.appeared.size() << " new, " << diff.vanished.size() << " vanished, "
+      << diff.moved.size() << " moved, " << diff.same.size() << " the same\n";
+  return out.str();
+}
+
+/// What `diff` takes.
+struct DiffLine {
+  std::filesystem::path before, after;
+  std::optional<std::filesystem::path> csv, png, scene;
+  std::string config;
+  std::vector<std::string> set;
+};
+
+std::string diffMapFiles(const DiffLine& line) {
+  const MapUpdateOptions options =
+      line.config.empty() ? MapUpdateOptions() : loadSettings(line.config, line.set).upkeep;
+  const auto mapBefore = io::readPoleMap(line.before), mapAfter = io::readPoleMap(line.after);
+  io::requireSameDatum({line.before.string(), mapBefore.info},
+                       {line.after.string(), mapAfter.info});
+  const MapDiff diff = diffMaps(mapBefore.poles, mapAfter.poles, {options.moved});
+  const std::string before = line.before.filename().string(),
+                    after = line.after.filename().string();
+  if (line.csv) writeCsv(diff, *line.csv);
+  if (line.png) report::drawDiffPng(diff, before + " → " + after, *line.png);
+  if (line.scene) scene::save(*report::makeDiffScene(diff, before + " to " + after), *line.scene);
+  return summaryText(diff);
+}
+
 Subcommand diffCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("diff", "Lists and draws what changed between two maps");
-  struct Line {
-    MapDiffFiles files;
-    std::string config;
-    std::vector<std::string> set;
-  };
-  const auto shared = std::make_shared<Line>();
-  Line& line = *shared;
-  addFile(cli, "before", line.files.before, "Map of the earlier day, .polemap")->required();
-  addFile(cli, "after", line.files.after, "Map of the later day, .polemap")->required();
-  addConfigOption(cli, line.config, " ([map_update] moved_m)");
-  addSetOption(cli, line.set);
+  const auto line = std::make_shared<DiffLine>();
+  addFile(cli, "before", line->before, "Map of the earlier day, .polemap")->required();
+  addFile(cli, "after", line->after, "Map of the later day, .polemap")->required();
+  addConfigOption(cli, line->config, " ([map_update] moved_m)");
+  addSetOption(cli, line->set);
   cli.get_option("--set")->needs("--config");
-  addOutput(cli, "--scene", line.files.scene, "Also write a .3Dscene of the changes");
-  addOutput(cli, "--csv", line.files.csv, "Also write the changes to this table");
-  addOutput(cli, "--png", line.files.png, "Also draw the changes");
-  return {&cli, [shared](bool) {
-            const auto& [files, config, set] = *shared;
-            const MapUpdateOptions options =
-                config.empty() ? MapUpdateOptions() : loadSettings(config, set).upkeep;
-            return summaryText(diffMapFiles(files, {options.moved}));
-          }};
+  addOutput(cli, "--scene", line->scene, "Also write a .3Dscene of the changes");
+  addOutput(cli, "--csv", line->csv, "Also write the changes to this table");
+  addOutput(cli, "--png", line->png, "Also draw the changes");
+  return {&cli, [line](bool) { return diffMapFiles(*line); }};
+}
+
+/// From `.polemap` to `.polemap` everything is kept, so that a datum can be set. \param datum
+/// Needed when the input has none; otherwise both must agree. \return What the program prints.
+std::string convertMap(const std::filesystem::path& input, const std::filesystem::path& output,
+                       const std::optional<io::Datum>& datum) {
+  const MapFileKind written = mapFileKind(output);  // before anything is read
+  MapContent content = readMapFile(input, datum);
+  io::PoleMapData& map = content.map;
+  if (map.poles.empty()) throw Error(input.string() + ": no pole in it");
+  if (datum) io::setDatum(map.info, *datum, input.string() + ": ");
+  if (map.info.count("program") == 0) {
+    map.info["program"] = std::string("pole-map ") + version();
+    map.info["build"] = buildIdentity();
+    map.info["converted_from"] = input.filename().string();
+  }
+  writeMapFile(output, content);
+  std::ostringstream out;
+  out << output.string() << ": " << map.poles.size() << " poles\n";
+  if (content.otherFeatures > 0)
+    out << "features that are no points, left out: " << content.otherFeatures << '\n';
+  if (written != MapFileKind::polemap && !map.candidates.empty())
+    out << "candidates, which are not on the map, left out: " << map.candidates.size() << '\n';
+  return out.str();
 }
 
 Subcommand convertCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "convert", "Converts a map; endings name the kinds: .polemap, .csv, .geojson; .npz as input");
-  const auto options = std::make_shared<MapConvertOptions>();
-  const auto datum = std::make_shared<std::string>();
-  addFile(cli, "input", options->input, "Map to read")->required();
-  addOutput(cli, "--output", options->output, "Map to write")->required();
-  addDatumOption(cli, *datum, "the map");
-  return {&cli, [options, datum](bool) {
-            options->datum = datumOf(*datum);
-            return summaryText(convertMap(*options), *options);
-          }};
+  struct Line {
+    std::filesystem::path input, output;
+    std::string datum;
+  };
+  const auto line = std::make_shared<Line>();
+  addFile(cli, "input", line->input, "Map to read")->required();
+  addOutput(cli, "--output", line->output, "Map to write")->required();
+  addDatumOption(cli, line->datum, "the map");
+  return {&cli,
+          [line](bool) { return convertMap(line->input, line->output, datumOf(line->datum)); }};
 }
 
 Subcommand importCommand(CLI::App& program) {

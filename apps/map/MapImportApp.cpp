@@ -6,12 +6,11 @@
 #include <set>
 #include <sstream>
 
-#include "cli/MapPlane.h"
+#include "cli/Projections.h"
 #include "cli/Version.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
-#include "map/CoordinateSystem.h"
 #include "map/GeoJson.h"
 #include "map/Inventory.h"
 

@@ -2,6 +2,7 @@
 /// \file MappingSession.h
 /// \brief One rawlog at known poses, ready for mapping; what building and updating share.
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <iosfwd>
 #include <map>
@@ -9,17 +10,64 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/common/Types.h>
 #include "cli/Settings.h"
+#include "core/common/Deskew.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "core/mapping/MapUpdater.h"
 #include "core/slam/PoleMotions.h"
 #include "io/map/Datum.h"
 #include "io/map/PoleMapFile.h"
-#include "map/SessionPoses.h"
 #include "mrpt/rawlog/PoleSequence.h"
 #include "report/picture/MapView.h"
 
 namespace polemcl::apps {
+
+/// \brief Where poses of sessions come from.
+enum class PoseKind {
+  truth,     ///< a TUM file
+  estimate,  ///< a run of `pole-localize`
+  odometry   ///< no file: motions one behind the other, for mapDrives() to make better
+};
+
+/// \brief The pose of one scan.
+struct ScanPose {
+  Pose2D pose;                                           ///< of the robot in the map, m and rad
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, yaw, m and rad; zero for truth
+  bool isOk = true;  ///< false: the localizer was `degraded` or `lost` there
+};
+
+/// \brief The poses of one session, from one file.
+class SessionPoses {
+ public:
+  /// \param file For truth: TUM, robot poses. For an estimate: `run_NN.tum` of `pole-localize`;
+  /// poses and covariances are read from the `run_NN_cov.csv` beside it, its health from
+  /// `run_NN_health.csv`.
+  /// \throws Error when a file cannot be read.
+  SessionPoses(PoseKind kind, const std::filesystem::path& file);
+  /// \brief Poses by the odometry, from the first scan on.
+  explicit SessionPoses(std::vector<StampedPose2D> odometry);
+
+  /// \brief None where the file says nothing.
+  /// \param scan Number of the scan in its rawlog. \param time Time of the scan, s.
+  /// \throws Error when an estimate for this scan has another time: it is of another rawlog.
+  std::optional<ScanPose> at(std::size_t scan, double time) const;
+  /// \brief Velocity in the frame of the robot, from the poses before and after; zero where there
+  /// is a gap.
+  Velocity velocityAt(double time) const;
+
+ private:
+  std::optional<ScanPose> estimateOf(std::size_t scan, double time) const;
+
+  PoseKind m_kind;
+  std::filesystem::path m_file;
+  std::vector<StampedPose2D> m_trajectory;
+  struct Estimate {
+    double time = 0;
+    ScanPose pose;
+  };
+  std::map<std::size_t, Estimate> m_estimates;  ///< by the number of the scan
+};
 
 /// \brief Files of one session.
 struct SessionFiles {

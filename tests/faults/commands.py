@@ -18,7 +18,6 @@ localize: pole-localize --config demo.ini --input {in}/drive.rawlog --map {in}/s
 eval-trajectory: pole-eval trajectory --truth {in}/drive.tum --estimate {in}/run/run_00.tum --map {in}/street.polemap --png {out}/run.png --json {out}/run.json
 eval-map: pole-eval map --truth {in}/scans/poles_gt.csv --map {in}/street.polemap --json {out}/map.json
 eval-detections: pole-eval detections --scans {in}/scans --poles {in}/poles.rawlog --visible {out}/seen.csv --json {out}/found.json
-eval-mrpt-truth: pole-eval mrpt-truth --truth {in}/drive.tum --output {out}/truth.txt
 eval-sightings: pole-eval sightings --poles {in}/drive.rawlog --output {out}/sightings.csv
 eval-features: pole-eval features --config demo.ini --scans {in}/scans --output {out}/features.csv
 batch: pole-batch {in}/batch.ini --output {out}/batch --jobs 1 --resume

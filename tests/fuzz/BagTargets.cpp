@@ -1,7 +1,6 @@
 #include "fuzz/Fuzz.h"
 #include "io/dataset/Rosbag2.h"
 #include "io/file/Bytes.h"
-#include "io/rosbag/PointCloud2.h"
 #include "io/rosbag/RosMessages.h"
 #include "support/McapFiles.h"
 #include "support/RosBags.h"

@@ -44,8 +44,8 @@ std::vector<std::string> npzSeeds() {
 void readGeoJson(std::string_view bytes) {
   const auto file = fileOf("a.geojson", bytes);
   std::size_t left = 0;
-  readGeoJsonPoints(file, left);
-  polemcl::readGeoJson(file, io::Datum{50.5, 7.25, 0});
+  apps::readGeoJsonPoints(file, left);
+  apps::readGeoJson(file, io::Datum{50.5, 7.25, 0});
 }
 
 std::vector<std::string> geoJsonSeeds() {

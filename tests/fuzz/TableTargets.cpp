@@ -5,10 +5,11 @@
 #include "io/dataset/LabelledScans.h"
 #include "io/file/CsvTable.h"
 #include "io/file/Date.h"
+#include "io/file/TextFile.h"
 #include "io/map/Datum.h"
 #include "io/map/PoleTables.h"
 #include "map/Inventory.h"
-#include "map/SessionPoses.h"
+#include "map/MappingSession.h"
 #include "report/batch/PublishedResults.h"
 
 namespace polemcl::fuzz {

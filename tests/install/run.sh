@@ -151,7 +151,7 @@ paste -d' ' filtered.txt tum.txt | tail -n 40 |
 # The lines at the head of the settings, and the program itself.
 mkdir pf
 cp "$prefix/share/polemcl/config/mrpt/pf-localization.ini" pf
-sed -n 's/^;   pole-/pole-/p' pf/pf-localization.ini >pf/example.sh
+sed -n 's/^;   \(pole-\|awk \)/\1/p' pf/pf-localization.ini >pf/example.sh
 [ "$(wc -l <pf/example.sh)" -eq 4 ] || fail "pf-localization.ini has no example of four lines"
 (cd pf && PATH="$bin:$PATH" quietly sh -e example.sh)
 (cd pf && LD_PRELOAD="$lib/libpolemcl.so" quietly pf-localization pf-localization.ini </dev/null)

@@ -2,8 +2,14 @@
 /// \file StreetTest.h
 /// \brief Shared by the tests of pole-extract and pole-map: an imported street.
 
+#include <functional>
+
+#include "cli/Projections.h"
 #include "cli/Settings.h"
 #include "import/DatasetImport.h"
+#include "io/data/Trajectory.h"
+#include "io/file/TextFile.h"
+#include "map/MapApp.h"
 #include "support/PoleStreetFiles.h"
 
 namespace testing_apps {
@@ -29,6 +35,35 @@ class StreetTest : public testing::Test {
     options.embed = embed;
     if (!sensorPose.empty()) options.T_robot_sensor = polemcl::apps::parseSensorPose(sensorPose);
     polemcl::apps::importDataset(options);
+  }
+
+  /// `pole-map build` of `in.rawlog` at its true poses: `map.polemap`.
+  void buildAtTruth() const {
+    const Outcome built = runProgram(polemcl::apps::mapMain,
+                                     {"build", "--config", config(), "--input", at("in.rawlog"),
+                                      "--truth", at("in.tum"), "--output", at("map.polemap")});
+    ASSERT_EQ(built.code, 0) << built.err;
+  }
+  /// The same without true poses: `street.polemap`, and its poses in `found.tum`.
+  Outcome buildWithoutTruth(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{
+        "build",    "--config",           config(),       "--input",      at("in.rawlog"),
+        "--output", at("street.polemap"), "--trajectory", at("found.tum")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(polemcl::apps::mapMain, arguments);
+  }
+  /// Writes `fixes.csv`, a fix just after each true pose. The truth begins at (100, 50) of a map
+  /// with the datum 48,9. \param along What the receiver says of the x of the truth.
+  void writeFixes(const std::function<double(double)>& along = [](double x) { return x; }) const {
+    using polemcl::io::fixed;
+    std::string fixes = "time,latitude,longitude,sigma\n";
+    const polemcl::apps::MapPlane plane({48, 9, 0});
+    for (const auto& [time, pose] : polemcl::io::readPlanarTum(folder / "in.tum")) {
+      const Eigen::Vector2d lonLat = plane.lonLat({100 + along(pose.x), 50 + pose.y});
+      fixes += fixed(time + 0.01, 3) + ',' + fixed(lonLat.y(), 10) + ',' + fixed(lonLat.x(), 10) +
+               ",0.02\n";
+    }
+    writeText(folder / "fixes.csv", fixes);
   }
 
   /// Replaces a word by another of the same length everywhere in a file.

@@ -159,20 +159,6 @@ TEST_F(EvalApp, WithoutMatplotlibAPictureIsRefusedInOneLineAndTheEarlierOneStays
   EXPECT_EQ(names(fs::path(at("run.png")).parent_path()), before) << "nothing is left behind";
 }
 
-TEST_F(EvalApp, WritesTheTruthOfPfLocalization) {
-  const auto convert = [&](const std::string& rows) {
-    writeText(at("drive.tum"), rows);
-    return run({"mrpt-truth", "--truth", at("drive.tum"), "--output", at("truth.txt")});
-  };
-  const auto outcome =
-      convert("0 1 2 0 0 0 0 1\n0.1 1.5 2 0 0 0 0 1\n0.2 2 2.5 0 0 0 0.7071067812 0.7071067812\n");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(readText(at("truth.txt")),
-            "0.100000000 1.500000000 2.000000000 0.000000000\n"
-            "0.200000000 2.000000000 2.500000000 1.570796327\n");
-  expectFailure(convert("0 1 2 0 0 0 0 1\n1 1.5 2 0 0 0 0 1\n"), {"drive.tum", "no whole seconds"});
-}
-
 TEST_F(EvalApp, RefusesWhatCannotBeScored) {
   writeText(at("empty.csv"), "x,y\n");
   writeText(at("other.tum"), "1 0 0 0 0 0 0 1\n50 0 0 0 0 0 0 1\n51 0 0 0 0 0 0 1\n");

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "cli/MapPlane.h"
+#include "cli/Projections.h"
 #include "io/map/Datum.h"
 #include "mrpt/rawlog/GnssFixes.h"
 #include "support/CityFiles.h"

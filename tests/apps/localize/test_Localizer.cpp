@@ -8,7 +8,6 @@
 #include <polemcl/localizer/MapBuilder.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "localizer/ScanOdometry.h"
-#include "map/MapApp.h"
 #include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
 #include "support/Refusal.h"
@@ -167,10 +166,7 @@ TEST_F(StreetTest, PointsBecomePoses) {
   constexpr std::size_t number = 25;
   writeStreet(folder / "in", number);
   import("in");
-  const Outcome mapped =
-      runProgram(mapMain, {"build", "--config", config(), "--input", at("in.rawlog"), "--truth",
-                           at("in.tum"), "--output", at("map.polemap")});
-  ASSERT_EQ(mapped.code, 0) << mapped.err;
+  buildAtTruth();
   const auto truth = io::planar(io::readTum(folder / "in.tum"));
   Localizer localizer(Settings(config()), folder / "map.polemap");
   localizer.start(truth[0].pose, 0.5, 0.1);
@@ -194,10 +190,7 @@ class OdometryTest : public StreetTest {
   OdometryTest() {
     writeStreet(folder / "in", number);
     import("in");
-    const Outcome mapped =
-        runProgram(mapMain, {"build", "--config", config(), "--input", at("in.rawlog"), "--truth",
-                             at("in.tum"), "--output", at("map.polemap")});
-    EXPECT_EQ(mapped.code, 0) << mapped.err;
+    buildAtTruth();
   }
   Localizer started() const {
     Localizer localizer(Settings(config()), folder / "map.polemap");
@@ -453,10 +446,7 @@ TEST_F(StreetTest, PointsBecomeTheMapOfPoleMapBuild) {
   constexpr std::size_t number = 12;
   writeStreet(folder / "in", number);
   import("in");
-  const Outcome mapped =
-      runProgram(mapMain, {"build", "--config", config(), "--input", at("in.rawlog"), "--truth",
-                           at("in.tum"), "--output", at("map.polemap")});
-  ASSERT_EQ(mapped.code, 0) << mapped.err;
+  buildAtTruth();
   const auto truth = io::planar(io::readTum(folder / "in.tum"));
   MapBuilder builder{Settings(config())};
   EXPECT_HAS(messageOf([&] { builder.save(folder / "none.polemap"); }), "no pole found in 0 scans");

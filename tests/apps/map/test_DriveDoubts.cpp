@@ -1,14 +1,11 @@
 /// \file test_DriveDoubts.cpp
 /// \brief pole-map build without true poses: what it says of an odometry that is wrong.
 
-#include <functional>
 #include <sstream>
 
-#include "cli/MapPlane.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
-#include "map/MapApp.h"
 #include "support/ExpectHas.h"
 #include "support/StreetTest.h"
 
@@ -22,28 +19,10 @@ namespace {
 
 class DriveDoubts : public StreetTest {
  protected:
-  Outcome build(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{
-        "build",    "--config",           config(),       "--input",      at("in.rawlog"),
-        "--output", at("street.polemap"), "--trajectory", at("found.tum")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
-  }
   void driveWithFixes(std::size_t scans) {
     writeStreet(folder / "in", scans);
     import("in");
-    writeFixes([](double x) { return x; });
-  }
-  /// A fix just after each scan. \param along What the receiver says of the x of the truth.
-  void writeFixes(const std::function<double(double)>& along) {
-    std::string fixes = "time,latitude,longitude,sigma\n";
-    const MapPlane plane({48, 9, 0});
-    for (const StampedPose2D& at : io::readPlanarTum(folder / "in.tum")) {
-      const Eigen::Vector2d lonLat = plane.lonLat({100 + along(at.pose.x), 50 + at.pose.y});
-      fixes += io::fixed(at.time + 0.01, 3) + ',' + io::fixed(lonLat.y(), 10) + ',' +
-               io::fixed(lonLat.x(), 10) + ",0.02\n";
-    }
-    writeText(folder / "fixes.csv", fixes);
+    writeFixes();
   }
   /// Takes scans out of the rawlog; the odometry tells the way over the gap.
   void leaveOut(std::size_t begin, std::size_t end) {
@@ -103,7 +82,7 @@ TEST_F(DriveDoubts, ManyMotionsThatNothingTellsGiveAWarning) {
   for (int i = 0; i < 30; ++i) times += io::fixed(50 + 0.1 * i, 3) + '\n';
   writeText(folder / "in" / "times.txt", times);
   import("in");
-  const auto whole = build();
+  const auto whole = buildWithoutTruth();
   ASSERT_EQ(whole.code, 0) << whole.err;
   const float ground[] = {10, 0, -1.7F, 0};
   EXPECT_EQ(whole.err.find("neither odometry nor poles"), std::string::npos) << whole.err;
@@ -111,7 +90,7 @@ TEST_F(DriveDoubts, ManyMotionsThatNothingTellsGiveAWarning) {
     writeText(folder / "in" / "velodyne" / scanName(i),
               {reinterpret_cast<const char*>(ground), 16});
   import("in");
-  const auto blind = build();
+  const auto blind = buildWithoutTruth();
   ASSERT_EQ(blind.code, 0) << blind.err;
   EXPECT_HAS(blind.err, "warning: in.rawlog: neither odometry nor poles tell 5 of its 29 motions");
   EXPECT_HAS(blind.out, "5 go on as before: look there, the first at 51.000 s");
@@ -120,7 +99,7 @@ TEST_F(DriveDoubts, ManyMotionsThatNothingTellsGiveAWarning) {
 TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
   writeStreet(folder / "in", 30);
   import("in");
-  const auto right = build();
+  const auto right = buildWithoutTruth();
   ASSERT_EQ(right.code, 0) << right.err;
   EXPECT_EQ(right.err, "");
   EXPECT_EQ(info().count("warnings"), 0u);
@@ -130,7 +109,7 @@ TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
     rows += (++row == 15 ? "2.7 0 0 0.02 0.01 0.003" : line) + '\n';
   writeText(folder / "in" / "odometry.txt", rows);
   import("in");
-  const auto slipped = build();
+  const auto slipped = buildWithoutTruth();
   ASSERT_EQ(slipped.code, 0) << slipped.err;
   EXPECT_HAS(slipped.err,
              "warning: in.rawlog: the poles contradict 1 of the 29 motions of its odometry, the "
@@ -144,7 +123,7 @@ TEST_F(DriveDoubts, ALidarThatIsTurnedIsTold) {
   const std::string told = "warning: in.rawlog: as the poles pass, the LiDAR points 3.";
   writeStreet(folder / "in", 30);
   import("in");
-  EXPECT_EQ(build().err, "");
+  EXPECT_EQ(buildWithoutTruth().err, "");
   std::string rows;  // to the left by 3.2°
   for (const std::string& line : io::readLines(folder / "in" / "odometry.txt")) {
     double x = 0, y = 0, yaw = 0;
@@ -154,7 +133,7 @@ TEST_F(DriveDoubts, ALidarThatIsTurnedIsTold) {
   }
   writeText(folder / "in" / "odometry.txt", rows);
   import("in");
-  EXPECT_HAS(build().err, told);
+  EXPECT_HAS(buildWithoutTruth().err, told);
   auto truth = io::readTum(folder / "in.tum");
   for (auto& row : truth) row.pose.rotate(Eigen::AngleAxisd(-0.056, Eigen::Vector3d::UnitZ()));
   io::writeTum(folder / "in.tum", truth);
@@ -166,7 +145,7 @@ TEST_F(DriveDoubts, ALidarThatIsTurnedIsTold) {
 
 TEST_F(DriveDoubts, PositionsOfAnotherClockAreTold) {
   driveWithFixes(60);
-  const auto right = build({"--gnss", at("fixes.csv")});
+  const auto right = buildWithoutTruth({"--gnss", at("fixes.csv")});
   ASSERT_EQ(right.code, 0) << right.err;
   EXPECT_EQ(right.err, "");
   EXPECT_HAS(right.out, "placed by 59 positions from satellites;");
@@ -174,7 +153,7 @@ TEST_F(DriveDoubts, PositionsOfAnotherClockAreTold) {
   EXPECT_HAS(right.out, "m from its path (median), 0 of them do not fit");
   EXPECT_EQ(info().at("fixes"), "59");
   writeFixes([](double x) { return x < 25 ? x : std::min(2 * x - 25, 55.0); });
-  const auto late = build({"--gnss", at("fixes.csv")});
+  const auto late = buildWithoutTruth({"--gnss", at("fixes.csv")});
   ASSERT_EQ(late.code, 0) << late.err;
   EXPECT_HAS(late.err, "of 59 positions from satellites do not fit its path, they lie ");
   EXPECT_HAS(late.err, "may lie wrong on Earth by far more");
@@ -186,10 +165,11 @@ TEST_F(DriveDoubts, PositionsOfAnotherClockAreTold) {
 
 TEST_F(DriveDoubts, ADatumNeedsPositionsThatPlaceTheMapThere) {
   driveWithFixes(60);
-  expectFailure(build({"--datum", "48,9"}), {"--datum 48,9,0: no drive has five positions",
-                                             "--gnss or --truth", "leave out --datum"});
+  expectFailure(
+      buildWithoutTruth({"--datum", "48,9"}),
+      {"--datum 48,9,0: no drive has five positions", "--gnss or --truth", "leave out --datum"});
   EXPECT_FALSE(fs::exists(folder / "street.polemap"));
-  EXPECT_EQ(build({"--datum", "48,9", "--gnss", at("fixes.csv")}).code, 0);
+  EXPECT_EQ(buildWithoutTruth({"--datum", "48,9", "--gnss", at("fixes.csv")}).code, 0);
 }
 
 /// Key frames of a slow robot, a metre and 3 s apart.
@@ -200,7 +180,7 @@ TEST_F(DriveDoubts, PositionsBetweenScansThatAreLateButNearAreUsed) {
   writeText(folder / "in" / "times.txt", slow);
   import("in");
   writeFixes([](double x) { return x; });
-  const auto near = build({"--gnss", at("fixes.csv")});
+  const auto near = buildWithoutTruth({"--gnss", at("fixes.csv")});
   ASSERT_EQ(near.code, 0) << near.err;
   EXPECT_HAS(near.out, "placed by 59 positions");
   EXPECT_EQ(near.out.find("left out"), std::string::npos) << near.out;
@@ -210,7 +190,7 @@ TEST_F(DriveDoubts, PositionsBetweenScansThatAreLateButNearAreUsed) {
 TEST_F(DriveDoubts, PositionsBetweenScansFarApartAreCounted) {
   driveWithFixes(60);
   leaveOut(30, 44);
-  const auto gap = build({"--gnss", at("fixes.csv")});
+  const auto gap = buildWithoutTruth({"--gnss", at("fixes.csv")});
   ASSERT_EQ(gap.code, 0) << gap.err;
   EXPECT_HAS(gap.out, "placed by 44 positions");
   EXPECT_HAS(gap.out,
@@ -218,7 +198,7 @@ TEST_F(DriveDoubts, PositionsBetweenScansFarApartAreCounted) {
              "m apart");
   const auto rows = io::readLines(folder / "fixes.csv");
   writeText(folder / "few.csv", rows[0] + '\n' + rows[33] + '\n' + rows[34] + '\n');
-  expectFailure(build({"--gnss", at("few.csv")}),
+  expectFailure(buildWithoutTruth({"--gnss", at("few.csv")}),
                 {"few.csv: all 2 of its positions", "more than 2 s and 10 m apart"});
 }
 

@@ -1,5 +1,4 @@
 #include <polemcl/core/common/Types.h>
-#include "cli/MapPlane.h"
 #include "cli/RunRecords.h"
 #include "extract/ExtractApp.h"
 #include "io/data/GnssCsv.h"
@@ -100,9 +99,7 @@ TEST_F(MapApp, WithoutTruthOdometryAndPolesGiveThePoses) {
   import.odometryNoise = 0.02;
   import.odometryScale = 0.03;
   importDataset(import);
-  const auto outcome = runProgram(
-      mapMain, {"build", "--config", config(), "--input", at("in.rawlog"), "--output",
-                at("street.polemap"), "--trajectory", at("found.tum"), "--png", at("map.png")});
+  const auto outcome = buildWithoutTruth({"--png", at("map.png")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("poses by odometry"), std::string::npos) << outcome.out;
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("poses"), "odometry");
@@ -171,22 +168,9 @@ TEST_F(MapApp, WithoutTruthDrivesOfAStreetShareAMap) {
 TEST_F(MapApp, PositionsFromSatellitesGiveTheDatum) {
   writeStreet(folder / "in", 60, streetPoles(), 50, 0);
   import("in");
-  std::string fixes = "time,latitude,longitude,sigma\n";
-  const MapPlane plane({48, 9, 0});
-  for (const StampedPose2D& at : io::readPlanarTum(folder / "in.tum")) {
-    const Eigen::Vector2d lonLat = plane.lonLat({100 + at.pose.x, 50 + at.pose.y});
-    fixes += io::fixed(at.time + 0.01, 3) + ',' + io::fixed(lonLat.y(), 10) + ',' +
-             io::fixed(lonLat.x(), 10) + ",0.02\n";
-  }
-  writeText(folder / "fixes.csv", fixes);
-  const auto build = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{
-        "build",    "--config",           config(),       "--input",      at("in.rawlog"),
-        "--output", at("street.polemap"), "--trajectory", at("found.tum")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
-  };
-  const auto outcome = build({"--gnss", at("fixes.csv"), "--datum", "48,9"});
+  writeFixes();
+  const std::string fixes = readText(folder / "fixes.csv");
+  const auto outcome = buildWithoutTruth({"--gnss", at("fixes.csv"), "--datum", "48,9"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("placed by 59 positions"), std::string::npos) << outcome.out;
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum"), "48,9,0");
@@ -196,36 +180,37 @@ TEST_F(MapApp, PositionsFromSatellitesGiveTheDatum) {
     EXPECT_NEAR(found[i].pose.x, 100 + truth[i].pose.x, 0.1) << i;
     EXPECT_NEAR(found[i].pose.y, 50 + truth[i].pose.y, 0.1) << i;
   }
-  EXPECT_EQ(build({"--gnss", at("fixes.csv")}).code, 0) << "the first fix is the datum";
+  EXPECT_EQ(buildWithoutTruth({"--gnss", at("fixes.csv")}).code, 0) << "the first fix is the datum";
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum").rfind("48.0004", 0), 0u);
   const std::size_t firstRow = fixes.find('\n') + 1;
   writeText(folder / "cold.csv", std::string(fixes).insert(firstRow, "50.005,0,0,5\n"));
-  const auto cold = build({"--gnss", at("cold.csv")});
+  const auto cold = buildWithoutTruth({"--gnss", at("cold.csv")});
   EXPECT_NE(cold.out.find("placed by 59 positions"), std::string::npos) << cold.out << cold.err;
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum").rfind("48.0004", 0), 0u);
-  expectFailure(build({"--gnss", at("fixes.csv"), "--datum", "49,9"}),
+  expectFailure(buildWithoutTruth({"--gnss", at("fixes.csv"), "--datum", "49,9"}),
                 {"fixes.csv", "111 km from the datum 49,9,0", "leave out --gnss"});
   fs::copy_file(folder / "in.rawlog", folder / "bare.rawlog");
   const auto given = io::readGnssCsv(folder / "fixes.csv");
   std::string received;
   for (const GnssFix& fix : given) received += samples::bytesOf(*gnssObservation(fix));
   writeText(folder / "in.rawlog", readText(folder / "in.rawlog") + received);
-  const auto kept = build({});
+  const auto kept = buildWithoutTruth();
   EXPECT_NE(kept.out.find("placed by 59 positions"), std::string::npos) << kept.out << kept.err;
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum").rfind("48.0004", 0), 0u);
-  ASSERT_EQ(build({"--no-gnss"}).code, 0);
+  ASSERT_EQ(buildWithoutTruth({"--no-gnss"}).code, 0);
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.count("datum"), 0u);
-  EXPECT_EQ(build({"--no-gnss", "--gnss", at("fixes.csv")}).code, 2);
-  expectFailure(build({"--datum", "49,9"}), {"in.rawlog", "111 km from", "--no-gnss"});
+  EXPECT_EQ(buildWithoutTruth({"--no-gnss", "--gnss", at("fixes.csv")}).code, 2);
+  expectFailure(buildWithoutTruth({"--datum", "49,9"}), {"in.rawlog", "111 km from", "--no-gnss"});
   fs::copy_file(folder / "bare.rawlog", folder / "in.rawlog", fs::copy_options::overwrite_existing);
-  ASSERT_EQ(build({}).code, 0);
+  ASSERT_EQ(buildWithoutTruth().code, 0);
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.count("datum"), 0u);
-  EXPECT_EQ(build({"--gnss", at("fixes.csv"), at("fixes.csv")}).code, 2);
-  EXPECT_EQ(build({"--gnss", at("fixes.csv"), "--truth", at("in.tum")}).code, 2);
+  EXPECT_EQ(buildWithoutTruth({"--gnss", at("fixes.csv"), at("fixes.csv")}).code, 2);
+  EXPECT_EQ(buildWithoutTruth({"--gnss", at("fixes.csv"), "--truth", at("in.tum")}).code, 2);
   writeText(folder / "few.csv", fixes.substr(0, fixes.find('\n', 130) + 1));
-  expectFailure(build({"--gnss", at("few.csv")}), {"few.csv", "too few", "leave out --gnss"});
+  expectFailure(buildWithoutTruth({"--gnss", at("few.csv")}),
+                {"few.csv", "too few", "leave out --gnss"});
   writeText(folder / "late.csv", "time,latitude,longitude,sigma\n1000,48,9,1\n");
-  expectFailure(build({"--gnss", at("late.csv")}), {"late.csv", "none of its times"});
+  expectFailure(buildWithoutTruth({"--gnss", at("late.csv")}), {"late.csv", "none of its times"});
 }
 
 TEST_F(MapApp, WithoutTruthOdometryOrPolesTellTheWay) {

@@ -4,7 +4,6 @@
 #include "io/map/PoleMapFile.h"
 #include "io/map/PoleTables.h"
 #include "map/MapApp.h"
-#include "map/MapConvertApp.h"
 #include "support/DiskCalls.h"
 #include "support/TempFolder.h"
 

@@ -4,7 +4,6 @@
 #include <fstream>
 
 #include "io/map/PoleMapFile.h"
-#include "map/CoordinateSystem.h"
 #include "map/GeoJson.h"
 #include "map/MapApp.h"
 #include "support/ExpectHas.h"
@@ -61,15 +60,6 @@ const char* const s_osm = R"(<?xml version="1.0"?>
 )";
 
 }  // namespace
-
-// Against Krüger's series.
-TEST(CoordinateSystem, KnowsUtm) {
-  const CoordinateSystem utm("EPSG:32633");
-  const Eigen::Vector2d found = utm.lonLat({224681.943, 7023875.719});
-  EXPECT_NEAR(found.x(), 9.514946883, 1e-9);
-  EXPECT_NEAR(found.y(), 63.237904369, 1e-9);
-  EXPECT_EQ(CoordinateSystem("EPSG:4326").lonLat(found), found);
-}
 
 TEST_F(MapImportApp, TablesInUtmKeepDistancesAndRadii) {
   std::vector<std::string> options = s_utmOptions;

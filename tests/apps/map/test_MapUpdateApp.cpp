@@ -7,7 +7,6 @@
 #include "io/data/Trajectory.h"
 #include "io/map/PoleMapFile.h"
 #include "map/MapApp.h"
-#include "map/MapDiffApp.h"
 #include "map/MapUpdateApp.h"
 #include "support/StreetTest.h"
 

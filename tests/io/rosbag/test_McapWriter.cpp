@@ -1,6 +1,6 @@
 #include "io/rosbag/Bag.h"
 #include "io/rosbag/McapWriter.h"
-#include "io/rosbag/RosSchemas.h"
+#include "io/rosbag/RosResults.h"
 #include "support/IoFiles.h"
 #include "support/McapFiles.h"
 

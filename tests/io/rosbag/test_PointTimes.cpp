@@ -1,4 +1,5 @@
 #include <polemcl/io/rosbag/PackedCloud.h>
+#include "io/rosbag/RosMessages.h"
 #include "support/IoFiles.h"
 #include "support/RosBags.h"
 

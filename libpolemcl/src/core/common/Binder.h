@@ -31,8 +31,6 @@ struct POLEMCL_EXPORT Range {
   static Range inside(double min, double max) { return {min, max, true, true}; }
   /// \brief The lower end excluded.
   static Range aboveUpTo(double min, double max) { return {min, max, true, false}; }
-  /// \brief The upper end excluded.
-  static Range fromBelow(double min, double max) { return {min, max, false, true}; }
   bool contains(double value) const;
   std::string text() const;  ///< e.g. "> 0", "0 to 1", "any number"
 };

@@ -28,10 +28,8 @@ class MotionCheck {
            bool isConfirmed = true);
 
   std::size_t told() const { return m_told; }  ///< stretches of which the poles tell
-  /// \brief How many of them contradict the poses: beyond chance (0.1 %), if the poses err by 2 cm
-  /// and 0.1°.
-  std::size_t contradicting() const { return m_contradicting; }
-  /// \brief How many of these are far beyond chance, see contradictsClearly(), and confirmed.
+  /// \brief How many of them contradict the poses far beyond chance, see contradictsClearly(), and
+  /// are confirmed.
   std::size_t steps() const { return m_steps; }
   /// \brief Most stretches contradict the poses, or one of them clearly does.
   bool contradicts() const { return 2 * m_contradicting > m_told || m_steps > 0; }
@@ -53,7 +51,9 @@ class MotionCheck {
     Eigen::Vector2d vector = Eigen::Vector2d::Zero();
     double square = 0;
   } m_mounting;
-  std::size_t m_told = 0, m_contradicting = 0, m_steps = 0;
+  std::size_t m_told = 0, m_steps = 0;
+  /// Stretches beyond chance (0.1 %), if the poses err by 2 cm and 0.1°.
+  std::size_t m_contradicting = 0;
   double m_worstTime = 0, m_worstMetres = -1;  ///< of the steps, s and m
 };
 

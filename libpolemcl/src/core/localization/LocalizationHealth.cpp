@@ -126,6 +126,17 @@ Health HealthMonitor::update(const HealthInput& input) {
   return m_health;
 }
 
+template <class Step>
+void HealthMonitor::Figures::combine(const Figures& other, const Step& step) {
+  step(seen, other.seen);
+  step(matched, other.matched);
+  step(squared, other.squared);
+  step(matches, other.matches);
+  step(near.seen, other.near.seen);
+  step(near.matched, other.near.matched);
+  step(near.expected, other.near.expected);
+}
+
 /// A complete viewpoint whose poles match counts in what is usual: a mean over the drive, which
 /// forgets viewpoints more than kUsualWithin metres back.
 void HealthMonitor::learnUsual() {
@@ -147,7 +158,8 @@ void HealthMonitor::remember(const HealthInput& input, double metres) {
   while (m_driven - m_viewpoints.front().driven >
          (m_viewpoints.size() > kLeastViewpoints ? kLostWindow : kLongestWindow))
     m_viewpoints.pop_front();
-  Viewpoint scan;
+  Figures scan;
+  scan.near = input.near;
   for (const PoleMatch& match : input.matches) {
     scan.seen += match.confidence;
     if (!match.matched) continue;
@@ -159,17 +171,11 @@ void HealthMonitor::remember(const HealthInput& input, double metres) {
   doubtByRivals(input);
   Viewpoint& viewpoint = m_viewpoints.back();
   const double share = 1.0 / ++viewpoint.scans;
-  viewpoint.near.seen += share * (input.near.seen - viewpoint.near.seen);
-  viewpoint.near.matched += share * (input.near.matched - viewpoint.near.matched);
-  viewpoint.near.expected += share * (input.near.expected - viewpoint.near.expected);
-  viewpoint.seen += share * (scan.seen - viewpoint.seen);
-  viewpoint.matched += share * (scan.matched - viewpoint.matched);
-  viewpoint.squared += share * (scan.squared - viewpoint.squared);
-  viewpoint.matches += share * (scan.matches - viewpoint.matches);
+  viewpoint.combine(scan, [&](double& mean, double value) { mean += share * (value - mean); });
 }
 
 /// The cumulative sum test of Page (1954): earlier matches do not outweigh the latest scans.
-void HealthMonitor::doubt(const Viewpoint& scan, double metres) {
+void HealthMonitor::doubt(const Figures& scan, double metres) {
   const double wrong =
       (scan.seen - scan.matched) * std::log((1 - kWrongShare) / (1 - kRightShare)) -
       scan.matched * std::log(kRightShare / kWrongShare);
@@ -207,13 +213,7 @@ HealthMonitor::Window HealthMonitor::sumOver(double metres) const {
   std::size_t left = m_viewpoints.size();
   for (const Viewpoint& viewpoint : m_viewpoints) {
     if (left-- > kLeastViewpoints && m_driven - viewpoint.driven > metres) continue;
-    sum.seen += viewpoint.seen;
-    sum.matched += viewpoint.matched;
-    sum.squared += viewpoint.squared;
-    sum.matches += viewpoint.matches;
-    sum.near.seen += viewpoint.near.seen;
-    sum.near.matched += viewpoint.near.matched;
-    sum.near.expected += viewpoint.near.expected;
+    sum.combine(viewpoint, [](double& total, double value) { total += value; });
     ++sum.viewpoints;
   }
   return sum;

@@ -61,22 +61,26 @@ class POLEMCL_EXPORT HealthMonitor {
   bool hasLeftMap() const { return m_leftMap; }
 
  private:
-  /// Means of the scans from one viewpoint.
-  struct Viewpoint {
-    double driven = 0, seen = 0, matched = 0, squared = 0, matches = 0;
+  struct Figures {
+    double seen = 0, matched = 0, squared = 0, matches = 0;
     NearPoles near;
+    /// Calls step(own, other) for each figure.
+    template <class Step>
+    void combine(const Figures& other, const Step& step);
+  };
+  /// Means of the scans from one viewpoint.
+  struct Viewpoint : Figures {
+    double driven = 0;
     int scans = 0;
   };
   /// Sums over the viewpoints of a window.
-  struct Window {
-    double seen = 0, matched = 0, squared = 0, matches = 0;
-    NearPoles near;
+  struct Window : Figures {
     int viewpoints = 0;
     double matchedShare() const { return seen > 0 ? matched / seen : 0; }
   };
   void learnUsual();
   void remember(const HealthInput& input, double metres);
-  void doubt(const Viewpoint& scan, double metres);
+  void doubt(const Figures& scan, double metres);
   void doubtByRivals(const HealthInput& input);
   Window sumOver(double metres) const;
   double shareOfUsual(const Window& window) const;

@@ -9,7 +9,6 @@
 #include "core/common/Angles.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/ScanFiles.h"
-#include "io/dataset/ScanFixes.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {

@@ -6,7 +6,6 @@
 #include "core/common/Angles.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/ScanFiles.h"
-#include "io/dataset/ScanFixes.h"
 #include "io/dataset/ScanPoses.h"
 
 namespace polemcl::io {

@@ -12,7 +12,6 @@
 #include "core/common/Angles.h"
 #include "io/dataset/NcltOdometry.h"
 #include "io/dataset/ScanFiles.h"
-#include "io/dataset/ScanFixes.h"
 #include "io/dataset/ScanPoses.h"
 #include "io/file/TextFile.h"
 

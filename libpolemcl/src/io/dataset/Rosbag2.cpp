@@ -6,11 +6,9 @@
 #include <string>
 
 #include "io/dataset/RosbagMotions.h"
-#include "io/dataset/ScanFixes.h"
 #include "io/file/TextFile.h"
 #include "io/rosbag/Bag.h"
 #include "io/rosbag/FrameTree.h"
-#include "io/rosbag/PointCloud2.h"
 #include "io/rosbag/RosMessages.h"
 
 namespace polemcl::io {

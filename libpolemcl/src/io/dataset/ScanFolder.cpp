@@ -1,5 +1,6 @@
 #include "io/dataset/ScanFolder.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "io/data/PcdFile.h"
@@ -154,6 +155,17 @@ ScanFolder readPcdFolder(const fs::path& folder, const Eigen::Isometry3d& T_robo
   }
   readMotions(folder, T_robot_sensor, scans, result);
   return result;
+}
+
+void takeFix(const GnssFix& fix, ScanFolder& folder) {
+  if (isOnGlobe(fix) && std::isfinite(fix.time)) folder.fixes.push_back(fix);
+}
+
+void finishFixes(const std::string& source, ScanFolder& folder) {
+  std::stable_sort(folder.fixes.begin(), folder.fixes.end(),
+                   [](const GnssFix& a, const GnssFix& b) { return a.time < b.time; });
+  folder.notes.push_back(source + ": " + std::to_string(folder.fixes.size()) +
+                         " positions from satellites");
 }
 
 }  // namespace polemcl::io

@@ -1,7 +1,6 @@
 #pragma once
 /// \file RosMessages.h
-/// \brief Messages of ROS 2 that bags hold: odometry, IMU, transforms, positions. See PointCloud2.h
-/// for clouds.
+/// \brief Messages of ROS 2 that bags hold: clouds, odometry, IMU, transforms, positions.
 
 #include <Eigen/Geometry>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <polemcl/io/rosbag/PackedCloud.h>
 #include "io/rosbag/Cdr.h"
 
 namespace polemcl::io {
@@ -23,6 +23,11 @@ constexpr const char *kCloudType = "sensor_msgs/msg/PointCloud2",
 struct RosHeader {
   double time = 0;    ///< the stamp, s
   std::string frame;  ///< without a slash at its begin
+};
+
+/// \brief sensor_msgs/msg/PointCloud2, in the frame of its header.
+struct RosCloud : TimedCloud {
+  RosHeader header;
 };
 
 /// \brief nav_msgs/msg/Odometry.
@@ -62,8 +67,10 @@ struct RosNavSatFix {
 /// There is no pose if one of its numbers is not finite, or its quaternion is not of unit length
 /// (1 % off at most).
 /// \throws Error when the message is cut short, another number is not finite, or nanoseconds are a
-///         second or more.
+///         second or more; for clouds as unpack(), too.
 RosHeader readHeader(CdrReader& reader);
+/// \param withTimes Whether to read the times of the points.
+RosCloud decodeCloud(std::string_view message, const std::string& where, bool withTimes);
 RosOdometry decodeOdometry(std::string_view message, const std::string& where);
 RosImu decodeImu(std::string_view message, const std::string& where);
 RosNavSatFix decodeNavSatFix(std::string_view message, const std::string& where);

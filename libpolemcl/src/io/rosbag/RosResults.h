@@ -55,4 +55,8 @@ std::string encodePoles(const RosStamp& stamp, const std::string& name,
 std::string encodeDiagnostic(const RosStamp& stamp, const RosDiagnostic& diagnostic);
 /// @}
 
+/// \brief The definition of a type with those of all types in it, as `ros2msg` states them.
+/// \param type "nav_msgs/msg/Path". \throws Error when it is not one that is written.
+std::string rosSchema(const std::string& type);
+
 }  // namespace polemcl::io

@@ -1,11 +1,14 @@
 #pragma once
 /// \file PulseReturn.h
-/// \brief Response of a receiver to a pulse whose parts hit different objects.
+/// \brief Response of a receiver to a pulse whose parts hit different objects, in rain and
+/// spray.
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "sim/common/Random.h"
+#include "sim/common/RealismOptions.h"
 #include "sim/lidar/LidarModel.h"
 #include "sim/lidar/SolidView.h"
 
@@ -44,5 +47,14 @@ class PulseReturnModel {
   const std::vector<SolidView>& m_solids;
   const RealismOptions& m_realism;
 };
+
+/// \brief Range of the drop that a pulse meets first, m; nothing if it meets none.
+/// \param azimuth, elevation Direction of the pulse, sensor frame, rad; the vehicle drives along x.
+std::optional<double> dropRange(const RealismOptions& realism, double azimuth, double elevation,
+                                Random& random);
+
+/// \brief Factor of the signal from a surface at a range, m: wet surfaces are darker, and drops
+/// take energy on both ways.
+double rainFactor(const RealismOptions& realism, double range);
 
 }  // namespace polemcl::sim

@@ -3,9 +3,8 @@
 #include <cmath>
 
 #include "sim/lidar/PulseReturn.h"
-#include "sim/lidar/Weather.h"
 
-namespace polemcl::test_weather {
+namespace polemcl::test_pulse_return {
 
 using namespace polemcl::sim;
 
@@ -90,4 +89,4 @@ TEST(Weather, BlackSurfacesLosePulses) {
   EXPECT_NEAR(onSurface(dark, 0.6f, 0).share, onSurface(none, 0.6f, 0).share, 0.005);
 }
 
-}  // namespace polemcl::test_weather
+}  // namespace polemcl::test_pulse_return

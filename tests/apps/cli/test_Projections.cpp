@@ -3,13 +3,14 @@
 #include <cmath>
 #include <vector>
 
-#include "cli/MapPlane.h"
+#include "cli/Projections.h"
 #include "support/ExpectHas.h"
 #include "support/Refusal.h"
 
-namespace polemcl::test_map_plane {
+namespace polemcl::test_projections {
 
 using namespace polemcl;
+using namespace polemcl::apps;
 using testing_apps::messageOf;
 
 namespace {
@@ -46,6 +47,15 @@ const std::vector<io::Datum> datums{
 
 }  // namespace
 
+// Against Krüger's series.
+TEST(CoordinateSystem, KnowsUtm) {
+  const CoordinateSystem utm("EPSG:32633");
+  const Eigen::Vector2d found = utm.lonLat({224681.943, 7023875.719});
+  EXPECT_NEAR(found.x(), 9.514946883, 1e-9);
+  EXPECT_NEAR(found.y(), 63.237904369, 1e-9);
+  EXPECT_EQ(CoordinateSystem("EPSG:4326").lonLat(found), found);
+}
+
 TEST(MapPlane, PlacesStandAboveTheirLongitudeAndLatitude) {
   for (const io::Datum& datum : datums)
     for (const Eigen::Vector2d& place :
@@ -79,4 +89,4 @@ TEST(MapPlane, RefusesPlacesFarFromTheDatum) {
   EXPECT_HAS(messageOf([&] { plane.place({8, -50}); }), "is not on the same map");
 }
 
-}  // namespace polemcl::test_map_plane
+}  // namespace polemcl::test_projections
