@@ -177,7 +177,7 @@ fs::path BatchFolder::part(const BatchTask& task) const {
 }
 
 fs::path BatchFolder::stage(const BatchTask& task) const {
-  const fs::path folder = part(task);
+  fs::path folder = part(task);
   std::error_code none;
   fs::remove_all(folder, none);
   createFolder(folder);

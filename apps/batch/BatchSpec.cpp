@@ -73,7 +73,7 @@ class Placeholders {
   /// nclt.ini may have config = nclt.ini.
   std::string installed(const std::string& text, const std::string& session,
                         const std::string& folder) const {
-    const std::string beside = path(text, session);
+    std::string beside = path(text, session);
     std::error_code none;
     if (fs::exists(beside, none) && !fs::equivalent(beside, m_file, none)) return beside;
     const fs::path found = io::fileOfDataFolder(filled(text, session), folder);

@@ -92,6 +92,7 @@ CLI::Option* addChoice(CLI::App& cli, const std::string& flag, Value& value,
                        const std::vector<std::pair<std::string, Value>>& choices,
                        const std::string& meaning) {
   std::vector<std::string> words;
+  words.reserve(choices.size());
   for (const auto& choice : choices) words.push_back(choice.first);
   return cli
       .add_option_function<std::string>(

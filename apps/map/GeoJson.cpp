@@ -66,7 +66,7 @@ class Feature {
     return texts;
   }
   Eigen::Vector2d lonLat() const {
-    const Eigen::Vector2d found = coordinates();
+    Eigen::Vector2d found = coordinates();
     if (!(std::abs(found.x()) <= 360 && std::abs(found.y()) <= 90))
       fail("longitude or latitude is out of range; GeoJSON has degrees, longitude first");
     return found;

@@ -125,6 +125,7 @@ void countSessions(const AddedSessions& added, MapBuildSummary& summary) {
 
 std::vector<DrivenPath> pathsOf(const std::vector<MappingSession>& drives) {
   std::vector<DrivenPath> paths;
+  paths.reserve(drives.size());
   for (const MappingSession& drive : drives) paths.push_back({drive.path, drive.numbers});
   return paths;
 }

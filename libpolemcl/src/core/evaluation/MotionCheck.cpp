@@ -88,7 +88,7 @@ ScanRegistration motionOfPoles(const std::vector<PoleDetection>& before,
                                const std::vector<PoleDetection>& after, const Pose2D& truth) {
   RegistrationOptions options;
   options.maxMetres = s_farthest;
-  const ScanRegistration near = refineMotion(before, after, truth, options);
+  ScanRegistration near = refineMotion(before, after, truth, options);
   if (2 * static_cast<std::size_t>(near.pairs) >= std::min(before.size(), after.size()))
     return near;
   const ScanRegistration far = searchMotion(before, after, truth, options);

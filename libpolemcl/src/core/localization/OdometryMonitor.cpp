@@ -201,7 +201,7 @@ double OdometryMonitor::beyondOdometry(const Reference& reference, const Referen
 /// The odometry with the pairs that support it, corrected by them within its tolerance.
 ScanRegistration OdometryMonitor::allowed(const Reference& reference, const Reference& now) {
   const Pose2D odometry = relative(reference.odometry, now.odometry);
-  const ScanRegistration corrected =
+  ScanRegistration corrected =
       refineMotion(reference.poles, now.poles, odometry, RegistrationOptions());
   if (corrected.pairs >= 2 && beyondOdometry(reference, now, corrected) <= kSigmas)
     return corrected;

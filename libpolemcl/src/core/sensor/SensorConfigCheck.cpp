@@ -182,7 +182,7 @@ SensorConfigCheck::SensorConfigCheck(const SensorOptions& options, bool beams)
 std::string SensorConfigCheck::contradiction(const PointsView& points) const {
   const PointsCopy part = points.size > kMostCompared ? thinned(points) : PointsCopy();
   const PointsView compared = points.size > kMostCompared ? part.view() : points;
-  if (const std::string unit = wrongUnit(compared, m_options); !unit.empty()) return unit;
+  if (std::string unit = wrongUnit(compared, m_options); !unit.empty()) return unit;
   const BeamAgreement agreement =
       measureAgreement(compared, m_model, m_options.minRange, m_options.maxRange);
   if (agreement.points < kFewestPoints) return {};

@@ -68,10 +68,12 @@ void Bag::sortTopics() {
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return m_topics[a].name < m_topics[b].name; });
   std::vector<BagTopic> topics;
+  topics.reserve(order.size());
   for (const std::size_t i : order) topics.push_back(m_topics[i]);
   for (File& file : m_files) {
     file.topicIds.resize(order.size());
     std::vector<std::int64_t> ids;
+    ids.reserve(order.size());
     for (const std::size_t i : order) ids.push_back(file.topicIds[i]);
     file.topicIds = std::move(ids);
   }

@@ -155,8 +155,7 @@ BagFiles filesOfBag(const fs::path& folder) {
 
 BagFiles bagFiles(const fs::path& bag) {
   if (!fs::exists(bag)) throw Error(bag.string() + ": there is no such bag");
-  const BagFiles result =
-      fs::is_directory(bag) ? filesOfBag(bag) : BagFiles{{fs::absolute(bag)}, false};
+  BagFiles result = fs::is_directory(bag) ? filesOfBag(bag) : BagFiles{{fs::absolute(bag)}, false};
   for (const fs::path& file : result.files) {
     requireBagFile(file);
     if (!fs::is_regular_file(file))

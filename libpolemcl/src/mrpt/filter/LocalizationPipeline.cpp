@@ -70,6 +70,7 @@ void keepMostConfident(std::vector<PoleDetection>& poles) {
   order.resize(LocalizationPipeline::mostPoles);
   std::sort(order.begin(), order.end());
   std::vector<PoleDetection> kept;
+  kept.reserve(order.size());
   for (const std::size_t i : order) kept.push_back(poles[i]);
   poles = std::move(kept);
 }
@@ -85,6 +86,7 @@ double spreadBy(const Eigen::Matrix3d& motion, const FilterOptions& filter) {
 /// Median of the standard deviations of the poles' places along an axis, m.
 double medianSigma(const std::vector<MapPole>& poles) {
   std::vector<double> sigmas;
+  sigmas.reserve(poles.size());
   for (const MapPole& pole : poles) sigmas.push_back(std::sqrt(pole.covariance.trace() / 2));
   return elementOfRank(sigmas, sigmas.size() / 2);
 }

@@ -35,7 +35,8 @@ const std::vector<Direction>& directions() {
 /// Share of the time to the next block that has passed when a return is measured; times as in the
 /// manuals, us. MRPT gives no times to the lasers of an HDL-64E.
 double delayOf(int index, std::size_t lasers) {
-  if (lasers == 16) return (index / 16 * 55.296 + index % 16 * 2.304) / 110.592;
+  const int firing = index / 16, laser = index % 16;
+  if (lasers == 16) return (firing * 55.296 + laser * 2.304) / 110.592;
   return lasers == 32 ? index * 1.152 / 46.08 : 0;
 }
 

@@ -87,7 +87,7 @@ RawlogArchive::Header RawlogArchive::readHeader() {
 }
 
 CSerializable::Ptr RawlogArchive::readObject(const Header& header) {
-  const auto object = std::dynamic_pointer_cast<CSerializable>(header.known->createObject());
+  auto object = std::dynamic_pointer_cast<CSerializable>(header.known->createObject());
   if (!object) throw std::runtime_error("a class without content, '" + header.name + "'");
   if (header.known == CLASS_ID(CActionRobotMovement2D)) requireDistribution(header.version);
   internal_ReadObject(object.get(), header.name, header.old, header.version);

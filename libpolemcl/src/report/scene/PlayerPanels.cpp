@@ -192,6 +192,7 @@ void showTimeLine(viz::Scene& scene, const TimeLine& line, const std::string& wo
 void showKeys(viz::Scene& scene, const std::vector<std::string>& lines, bool withErrors) {
   if (lines.empty()) return scene::hidePanel(scene::panelOf(scene, "help", 0));
   std::vector<scene::LegendLine> legend;
+  legend.reserve(lines.size());
   for (const std::string& line : lines) legend.push_back({line, {}, 13});
   scene::showLegend(scene, legend, 1, {true, true, 20 + heightOf(withErrors)}, "help");
 }

@@ -163,8 +163,8 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
     LazyIndex() = default;
     explicit LazyIndex(std::shared_ptr<const PoleIndex> index) : m_index(std::move(index)) {}
     LazyIndex(const LazyIndex& other) : m_index(std::atomic_load(&other.m_index)) {}
-    LazyIndex& operator=(const LazyIndex& other) {
-      std::atomic_store(&m_index, std::atomic_load(&other.m_index));
+    LazyIndex& operator=(LazyIndex other) {
+      std::atomic_store(&m_index, std::move(other.m_index));
       return *this;
     }
     const PoleIndex& of(const std::vector<MapPole>& poles, double gate) const;
