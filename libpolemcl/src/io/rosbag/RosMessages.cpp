@@ -105,7 +105,7 @@ RosNavSatFix decodeNavSatFix(std::string_view message, const std::string& where)
   CdrReader reader(message, where);
   RosNavSatFix fix;
   fix.header = readHeader(reader);
-  fix.status = static_cast<int>(reader.get<std::int8_t>());
+  fix.status = reader.get<std::int8_t>();
   reader.get<std::uint16_t>();  // systems of satellites in use
   fix.latitude = reader.get<double>();
   fix.longitude = reader.get<double>();

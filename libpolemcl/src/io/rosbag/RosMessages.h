@@ -57,7 +57,7 @@ struct RosTransform {
 /// may be NaN where there is no fix.
 struct RosNavSatFix {
   RosHeader header;                                      ///< its frame is that of the antenna
-  int status = 0;                                        ///< negative: no fix
+  std::int8_t status = 0;                                ///< negative: no fix
   double latitude = 0, longitude = 0;                    ///< deg on WGS 84
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (east, north, up), m²
   int covarianceType = 0;                                ///< 0: the covariance is not known

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "core/common/Covariance.h"
@@ -92,9 +93,10 @@ mrpt::obs::CActionCollection::Ptr makeMotionAction(const PoseWithCovariance& mot
 void requireStep(const PoleScan& scan, std::optional<double> before) {
   const std::string when = std::to_string(scan.time) + " s";
   if (!isTimeInSeconds(scan.time)) throw Error("a scan at " + when + ": " + kTimeAllowed);
-  if (before && scan.time <= *before)
+  const double last = before.value_or(-std::numeric_limits<double>::infinity());
+  if (scan.time <= last)
     throw Error("time does not increase: a scan at " + when + " comes after one at " +
-                std::to_string(*before) + " s");
+                std::to_string(last) + " s");
   for (std::size_t i = 0; i < scan.poles_robot.size(); ++i)
     if (const char* fault = faultOf(scan.poles_robot[i]))
       throw Error("scan at " + when + ": pole " + std::to_string(i) + " has " + fault);
