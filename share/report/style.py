@@ -1,5 +1,6 @@
 """Style of all plots: colours, and how Matplotlib draws. Sizes are in pixels: 72 of them are an inch."""
 
+import logging
 import math
 
 import matplotlib
@@ -9,6 +10,8 @@ SERIES = ["#0072b2", "#c65102", "#00805d", "#a3447f", "#7d6608", "#4a5bd0"]
 TRUTH, INK, MUTED, RULE, PANEL, PAPER = (
     "#b9bdc4", "#1d1f23", "#5d6269", "#d9d6ce", "#f4f2ec", "#fcfbf8")
 
+# Newer versions tell for each map that equal scales widen its limits, which is meant.
+logging.getLogger("matplotlib.axes").setLevel(logging.ERROR)
 matplotlib.rcdefaults()  # whatever the user's own matplotlibrc says
 matplotlib.rcParams.update({
     "axes.axisbelow": True, "axes.edgecolor": "none", "axes.facecolor": PANEL, "axes.grid": True,
