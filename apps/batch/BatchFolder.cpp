@@ -22,8 +22,8 @@ namespace polemcl::apps {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* s_marker = "plan.json";
-constexpr const char* s_lock = ".lock";
+constexpr const char* kMarker = "plan.json";
+constexpr const char* kLock = ".lock";
 
 std::uint32_t checksumOf(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -100,9 +100,9 @@ BatchFolder::~BatchFolder() {
 }
 
 void BatchFolder::take(const std::string& name, bool resume) {
-  const bool known = fs::exists(m_path / s_marker);
+  const bool known = fs::exists(m_path / kMarker);
   // Begun, but cut short before its plan was written: ours as well.
-  const bool begun = known || fs::exists(m_path / s_lock);
+  const bool begun = known || fs::exists(m_path / kLock);
   if (!begun && fs::exists(m_path) && (!fs::is_directory(m_path) || !fs::is_empty(m_path)))
     throw Error(m_path.string() + ": exists and holds no batch; choose another --output");
   if (known && !resume)
@@ -110,7 +110,7 @@ void BatchFolder::take(const std::string& name, bool resume) {
                 ": holds a batch already; continue it with --resume, or choose another "
                 "--output");
   createFolder(m_path);
-  const fs::path lock = m_path / s_lock;
+  const fs::path lock = m_path / kLock;
   m_lock = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (m_lock < 0) throw Error(lock.string() + ": cannot be written: " + std::strerror(errno));
   if (::flock(m_lock, LOCK_EX | LOCK_NB) != 0)
@@ -118,7 +118,7 @@ void BatchFolder::take(const std::string& name, bool resume) {
   if (!known) return;
   std::string there;
   try {
-    there = readPlan(m_path / s_marker).name;
+    there = readPlan(m_path / kMarker).name;
   } catch (const Error&) {
     return;  // a plan that was damaged is written anew
   }
@@ -135,7 +135,7 @@ void BatchFolder::store(const BatchPlan& plan, const fs::path& batchFile) {
   sweep();
   for (const auto& [name, content] : plan.files) io::writeFile(m_path / name, content);
   io::writeFile(m_path / "batch.ini", io::readBytes(batchFile));
-  writePlan(m_path / s_marker, plan);
+  writePlan(m_path / kMarker, plan);
 }
 
 bool BatchFolder::isDone(const BatchTask& task) const {

@@ -8,11 +8,11 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr const char* s_format = "polemcl batch plan 2";
-constexpr const char* s_kinds[] = {"poles", "truth", "map", "score", "run"};  // by TaskKind
+constexpr const char* kFormat = "polemcl batch plan 2";
+constexpr const char* kKindNames[] = {"poles", "truth", "map", "score", "run"};  // by TaskKind
 /// What tasks may run: a plan that somebody else wrote must not run anything else.
-constexpr const char* s_programs[] = {"copy",     "pole-import",   "pole-simulate", "pole-extract",
-                                      "pole-map", "pole-localize", "pole-eval",     "pole-labels"};
+constexpr const char* kPrograms[] = {"copy",     "pole-import",   "pole-simulate", "pole-extract",
+                                     "pole-map", "pole-localize", "pole-eval",     "pole-labels"};
 
 Json toJson(const BatchTask& task) {
   return {{"id", task.id},           {"kind", name(task.kind)},
@@ -40,8 +40,7 @@ void requireId(const std::string& id, TaskKind kind) {
 
 void requireKnownProgram(const std::vector<std::string>& command) {
   if (command.empty()) throw Error("a command is empty");
-  if (std::find(std::begin(s_programs), std::end(s_programs), command.front()) ==
-      std::end(s_programs))
+  if (std::find(std::begin(kPrograms), std::end(kPrograms), command.front()) == std::end(kPrograms))
     throw Error("'" + command.front() + "' is no program that a batch runs");
 }
 
@@ -81,12 +80,12 @@ Experiment experimentFrom(const Json& json) {
 }  // namespace
 
 const char* name(TaskKind kind) {
-  return s_kinds[static_cast<int>(kind)];
+  return kKindNames[static_cast<int>(kind)];
 }
 
 TaskKind taskKind(const std::string& text) {
-  for (std::size_t i = 0; i < std::size(s_kinds); ++i)
-    if (text == s_kinds[i]) return static_cast<TaskKind>(i);
+  for (std::size_t i = 0; i < std::size(kKindNames); ++i)
+    if (text == kKindNames[i]) return static_cast<TaskKind>(i);
   throw Error("unknown kind of task '" + text + "'; allowed: poles, truth, map, score, run");
 }
 
@@ -98,7 +97,7 @@ std::string TaskPath::id() const {
 
 void writePlan(const std::filesystem::path& file, const BatchPlan& plan) {
   Json json;
-  json["format"] = s_format;
+  json["format"] = kFormat;
   json["name"] = plan.name;
   json["build"] = plan.build;
   json["tasks"] = json["cells"] = Json::array();
@@ -113,8 +112,8 @@ BatchPlan readPlan(const std::filesystem::path& file) {
     throw Error(file.string() + ": cannot be read; is this the folder of a batch?");
   try {
     const Json json = io::parsedJson<Json>(file);
-    if (json.at("format") != s_format)
-      throw Error("format is " + json.at("format").dump() + ", this program reads \"" + s_format +
+    if (json.at("format") != kFormat)
+      throw Error("format is " + json.at("format").dump() + ", this program reads \"" + kFormat +
                   "\"");
     BatchPlan plan;
     json.at("name").get_to(plan.name);

@@ -10,7 +10,7 @@ namespace {
 
 /// Beyond this, poses or clocks of two LiDARs contradict each other, in standard deviations: their
 /// covariances are right within a factor of two.
-constexpr double s_disagreement = 3;
+constexpr double kDisagreement = 3;
 
 void print(std::ostream& out, const LidarCounts& lidar) {
   out << "LiDAR " << lidar.label << ": " << lidar.scans << " scans, missing " << lidar.missing
@@ -20,7 +20,7 @@ void print(std::ostream& out, const LidarCounts& lidar) {
     out << "; " << lidar.shared << " poles that others saw, " << io::fixed(lidar.apart, 3)
         << " m apart (rms, " << io::fixed(lidar.apartSigmas, 1) << " sigma)";
   out << '\n';
-  if (lidar.apartSigmas > s_disagreement)
+  if (lidar.apartSigmas > kDisagreement)
     out << "LiDAR " << lidar.label
         << " disagrees with the others: check pose and clock_offset_s in "
         << "[sensor:" << lidar.label << "]\n";

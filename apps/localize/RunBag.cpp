@@ -10,8 +10,8 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr const char *s_map = "map", *s_robot = "base_link";
-constexpr double s_pathStep = 1;  ///< m
+constexpr const char *kMap = "map", *kRobot = "base_link";
+constexpr double kPathStep = 1;  ///< m
 
 std::uint16_t addTopic(io::McapWriter& bag, const char* name, const char* type,
                        bool latched = false) {
@@ -51,7 +51,7 @@ std::string mapMessage(double time, const std::vector<MapPole>& poles) {
   markers.reserve(poles.size());
   for (const MapPole& pole : poles)
     markers.push_back({pole.x, pole.y, pole.radius, pole.bottom, pole.top, 0.3f, 0.45f, 0.8f});
-  return io::encodePoles({time, s_map}, "map_poles", markers);
+  return io::encodePoles({time, kMap}, "map_poles", markers);
 }
 
 }  // namespace
@@ -78,17 +78,17 @@ void RunBag::add(const LocalizationPipeline& localization, const PoleScan& scan,
 
 void RunBag::addPose(double time, const PoseWithCovariance& pose) {
   const std::uint64_t stamp = io::rosNanoseconds(time);
-  m_bag.add(m_transform, stamp, io::encodeTransform({time, s_map}, s_robot, pose.mean));
-  m_bag.add(m_pose, stamp, io::encodePose({time, s_map}, pose));
+  m_bag.add(m_transform, stamp, io::encodeTransform({time, kMap}, kRobot, pose.mean));
+  m_bag.add(m_pose, stamp, io::encodePose({time, kMap}, pose));
   const Pose2D last = m_path.empty() ? Pose2D() : m_path.back().pose;
-  const bool isFar = std::hypot(pose.mean.x - last.x, pose.mean.y - last.y) >= s_pathStep;
+  const bool isFar = std::hypot(pose.mean.x - last.x, pose.mean.y - last.y) >= kPathStep;
   if (!m_path.empty() && !isFar) return;
   m_path.push_back({time, pose.mean});
   if (4 * m_path.size() >= 5 * m_pathWritten) addPath(time);
 }
 
 void RunBag::addPath(double time) {
-  m_bag.add(m_pathTopic, io::rosNanoseconds(time), io::encodePath({time, s_map}, m_path));
+  m_bag.add(m_pathTopic, io::rosNanoseconds(time), io::encodePath({time, kMap}, m_path));
   m_pathWritten = m_path.size();
 }
 
@@ -103,7 +103,7 @@ void RunBag::addPoles(const LocalizationPipeline& localization, const PoleScan& 
                        matched ? 0.8f : 0.5f, 0.1f});
   }
   m_bag.add(m_poles, io::rosNanoseconds(m_time),
-            io::encodePoles({m_time, s_robot}, "poles", markers));
+            io::encodePoles({m_time, kRobot}, "poles", markers));
 }
 
 void RunBag::commit() {

@@ -12,8 +12,8 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr double s_leastError = 0.5;  ///< m; true poses may be off, too
-constexpr double s_mostSpreads = 5;   ///< of the pose
+constexpr double kLeastError = 0.5;  ///< m; true poses may be off, too
+constexpr double kMostSpreads = 5;   ///< of the pose
 
 }  // namespace
 
@@ -79,7 +79,7 @@ void RunFiles::addError(const PoseError& error, const LocalizationUpdate& update
   if (update.health.state != HealthState::ok) return;
   ++m_spreadCheck.ok;
   m_spreadCheck.beyond +=
-      error.position > std::max(s_leastError, s_mostSpreads * update.health.spread);
+      error.position > std::max(kLeastError, kMostSpreads * update.health.spread);
 }
 
 }  // namespace polemcl::apps

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* summaryName = "summary.json";
-constexpr const char* s_staging = ".incomplete-";
+constexpr const char* kStaging = ".incomplete-";
 
 std::vector<fs::path> entriesOf(const fs::path& folder) {
   std::vector<fs::path> entries;
@@ -47,7 +47,7 @@ RunFolder::RunFolder(const fs::path& folder) : m_folder(folder) {
     throw Error(folder.string() + ": is a file; the results need a folder");
   m_created = fs::create_directories(folder, error);
   if (error) throw Error(folder.string() + ": cannot create the folder: " + error.message());
-  std::string pattern = (folder / (std::string(s_staging) + "XXXXXX")).string();
+  std::string pattern = (folder / (std::string(kStaging) + "XXXXXX")).string();
   if (!::mkdtemp(pattern.data())) {
     const std::string reason = std::strerror(errno);
     if (m_created) fs::remove(folder, error);
@@ -59,7 +59,7 @@ RunFolder::RunFolder(const fs::path& folder) : m_folder(folder) {
 
 std::vector<fs::path> RunFolder::leftovers() const {
   return io::leftoversIn(m_folder, [&](const std::string& name) {
-    return name.rfind(s_staging, 0) == 0 && name != m_staging.filename();
+    return name.rfind(kStaging, 0) == 0 && name != m_staging.filename();
   });
 }
 

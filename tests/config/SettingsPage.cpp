@@ -13,7 +13,7 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr const char* s_head = R"(# Settings
+constexpr const char* kHead = R"(# Settings
 
 All programs with `--config` read one INI file. It needs only the keys that differ from their defaults:
 
@@ -53,9 +53,9 @@ const std::vector<std::string> kUsual{"sensor.model",
                                       "motion.covariance_factor",
                                       "start.radius_m",
                                       "filter.particles"};
-constexpr const char* s_columns =
+constexpr const char* kColumns =
     "| key | meaning | default | unit | allowed | tier |\n|---|---|---|---|---|---|\n";
-constexpr const char* s_foot = R"(
+constexpr const char* kFoot = R"(
 These pages are made from the source code:
 `POLEMCL_WRITE_PAGES=1 build/bin/test_config --gtest_filter='SettingsPage.*'`
 )";
@@ -76,10 +76,10 @@ const std::vector<Group>& groups() {
       {"settings-paper", "The paper's extraction", "range_image"}};
   return groups;
 }
-constexpr const char* s_labelled = "settings-sensor";  // has also what s_lidars says
+constexpr const char* kLabelled = "settings-sensor";  // has also what kLidars says
 
 /// Sections that exist only for the labels that are listed.
-constexpr const char* s_lidars = R"(
+constexpr const char* kLidars = R"(
 ## [sensor:LABEL], [range_image:LABEL], [scan_line:LABEL]
 For each label that `[vehicle] lidars` lists. Their keys are those of the sections without a label; what they leave out
 is as it is there. `[sensor:LABEL]` has one more:
@@ -156,12 +156,12 @@ GroupPage pageOf(const Group& group, const PageBinder& binder) {
   std::istringstream names(group.sections);
   for (std::string name; names >> name;) {
     const PageBinder::Section& section = binder.section(name);
-    page.text += "\n## [" + name + "]\n" + section.comment + ".\n\n" + s_columns + section.rows;
+    page.text += "\n## [" + name + "]\n" + section.comment + ".\n\n" + kColumns + section.rows;
     page.row += (page.row.back() == '|' ? " [`[" : ", [`[") + name + "]`](" + group.name + ".md#" +
                 name + ")";
   }
-  if (group.name == s_labelled) {
-    page.text += s_lidars;
+  if (group.name == kLabelled) {
+    page.text += kLidars;
     page.row += ", [`[sensor:LABEL]` and others](" + group.name +
                 ".md#sensorlabel-range_imagelabel-scan_linelabel)";
   }
@@ -208,7 +208,7 @@ std::map<std::string, std::string> settingsPages() {
   bind(binder, defaults);
   checkGroups(binder);
   std::map<std::string, std::string> pages;
-  std::string& index = pages["settings.md"] = s_head;
+  std::string& index = pages["settings.md"] = kHead;
   index += usualSettings(binder);
   index += "| page | sections |\n|---|---|\n";
   for (const Group& group : groups()) {
@@ -216,7 +216,7 @@ std::map<std::string, std::string> settingsPages() {
     pages[group.name + ".md"] = page.text;
     index += page.row;
   }
-  index += s_foot;
+  index += kFoot;
   return pages;
 }
 

@@ -96,9 +96,9 @@ std::vector<std::string> otherValues(const WrittenKey& key) {
 }
 
 /// Where the defaults leave no other value to a key.
-const std::vector<std::string> s_base{"map.every_scan=false", "tracking.average=false",
-                                      "start.position_m=1 2", "world.side_streets=2",
-                                      "likelihood.weighted=false"};
+const std::vector<std::string> kBase{"map.every_scan=false", "tracking.average=false",
+                                     "start.position_m=1 2", "world.side_streets=2",
+                                     "likelihood.weighted=false"};
 
 TEST(Bindings, DefaultsSurvive) {
   const std::string text = written(AllSettings());
@@ -108,14 +108,14 @@ TEST(Bindings, DefaultsSurvive) {
 // One key after the other gets another value; after reading and writing again, that key and no
 // other has changed. So each key is bound to a field of its own.
 TEST(Bindings, EachKeyOfEachSectionHasAFieldOfItsOwn) {
-  const auto before = keys(written(loadWith(s_base)));
+  const auto before = keys(written(loadWith(kBase)));
   ASSERT_GT(before.size(), 120u);
   for (const WrittenKey& key : before) {
     if (key.name == "vehicle.lidars") continue;  // other labels have other sections
     SCOPED_TRACE(key.name + " = " + key.value);
     bool tried = false;
     for (const std::string& value : otherValues(key)) {
-      std::vector<std::string> assignments = s_base;
+      std::vector<std::string> assignments = kBase;
       assignments.push_back(key.name + "=" + value);
       std::vector<WrittenKey> after;
       try {

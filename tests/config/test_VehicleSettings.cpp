@@ -18,14 +18,14 @@ std::string refusal(const std::string& text) {
   return tests::messageOf([&] { load(text); });
 }
 
-const std::string s_two =
+const std::string kTwo =
     "[sensor]\nmodel = vlp16\nheight_m = 1.2\n[scan_line]\nmax_range_m = 30\n"
     "[vehicle]\nlidars = front os/rear.1\nfuse_within_s = 0.03\n"
     "[sensor:os/rear.1]\nmodel = hdl32e\npose = -1 0.2 1.5 180 5 0\nclock_offset_s = -0.02\n"
     "[scan_line:front]\nmin_top_m = 3\n[range_image:front]\nrows = 16\n";
 
 TEST(VehicleSettings, ALidarHasWhatItsSectionsSayAndElseWhatAllHave) {
-  const AllSettings all = load(s_two);
+  const AllSettings all = load(kTwo);
   ASSERT_EQ(all.vehicle.lidars.size(), 2u);
   const LidarOptions &front = all.vehicle.lidars[0], &rear = all.vehicle.lidars[1];
   EXPECT_EQ(front.label, "front");
@@ -46,7 +46,7 @@ TEST(VehicleSettings, ALidarHasWhatItsSectionsSayAndElseWhatAllHave) {
 }
 
 TEST(VehicleSettings, WrittenSettingsAreReadBackTheSame) {
-  const AllSettings all = load(s_two);
+  const AllSettings all = load(kTwo);
   const std::string text = apps::settingsText(all);
   EXPECT_HAS(text, "[sensor:os/rear.1]");
   EXPECT_HAS(text, "pose = -1 0.2 1.5 180 5 0");
@@ -55,7 +55,7 @@ TEST(VehicleSettings, WrittenSettingsAreReadBackTheSame) {
 
 TEST(VehicleSettings, AssignmentsReachTheSectionsOfALidar) {
   const AllSettings all =
-      apps::settingsFrom(ConfigFile::fromText(s_two, "t.ini"), {"sensor:os/rear.1.height_m=2.5"});
+      apps::settingsFrom(ConfigFile::fromText(kTwo, "t.ini"), {"sensor:os/rear.1.height_m=2.5"});
   EXPECT_EQ(all.vehicle.lidars[1].sensor.height, 2.5);
   EXPECT_EQ(all.vehicle.lidars[0].sensor.height, 1.2);
 }

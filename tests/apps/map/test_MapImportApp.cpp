@@ -40,13 +40,13 @@ class MapImportApp : public testing::Test {
 };
 
 /// An upper-case letter of Latin-1 in UTF-8, as Norwegian columns have it.
-const std::string s_utm =
+const std::string kUtm =
     "Punkt;UTM33-Nord;UTM33-\xc3\x98st;Umfang cm\n"
     "1;7023875.719;224681.943;62.8\n2;7023852.719;224712.845;\n3;7023852.8;224712.9;10\n";
-const std::vector<std::string> s_utmOptions{
+const std::vector<std::string> kUtmOptions{
     "--separator", ";", "--columns", "UTM33-\xc3\x98st,UTM33-Nord", "--crs", "EPSG:25833"};
 
-const char* const s_osm = R"(<?xml version="1.0"?>
+const char* const kOsm = R"(<?xml version="1.0"?>
 <osm version="0.6">
  <node id="1" lat="52.0" lon="13.0"><tag k="highway" v="street_lamp"/></node>
  <node id="2" lat="52.0001" lon="13.0"/>
@@ -62,10 +62,10 @@ const char* const s_osm = R"(<?xml version="1.0"?>
 }  // namespace
 
 TEST_F(MapImportApp, TablesInUtmKeepDistancesAndRadii) {
-  std::vector<std::string> options = s_utmOptions;
+  std::vector<std::string> options = kUtmOptions;
   options.insert(options.end(), {"--radius-property", "Umfang cm", "--radius-unit", "0.00159155",
                                  "--sigma-m", "0.3"});
-  const Outcome outcome = import("a.csv", s_utm, options);
+  const Outcome outcome = import("a.csv", kUtm, options);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_HAS(outcome.out, "2 poles");
   EXPECT_HAS(outcome.out, "left out: 1");
@@ -103,14 +103,14 @@ TEST_F(MapImportApp, PointsOfGeoJsonWithOtherPeoplesProperties) {
 }
 
 TEST_F(MapImportApp, LampsTreesSignsAndLightsOfOpenStreetMap) {
-  ASSERT_EQ(import("a.osm", s_osm, {"--datum", "52,13"}).code, 0);
+  ASSERT_EQ(import("a.osm", kOsm, {"--datum", "52,13"}).code, 0);
   const auto data = map();
   ASSERT_EQ(data.poles.size(), 4u);
   EXPECT_NEAR(data.poles[0].x, 0, 1e-6);
   EXPECT_NEAR(data.poles[1].y, 22.253, 0.01) << "the tree";
   EXPECT_NEAR(data.poles[2].y, 44.507, 0.01) << "the sign";
   EXPECT_NEAR(data.poles[3].x, 3.434, 0.01) << "middle of the light's known nodes";
-  const Outcome outcome = import("a.osm", s_osm, {"--keep", "kind=tree", "kind=light"});
+  const Outcome outcome = import("a.osm", kOsm, {"--keep", "kind=tree", "kind=light"});
   ASSERT_EQ(outcome.code, 0);
   EXPECT_HAS(outcome.out, "found: kind: lamp (1), light (1), sign (1), tree (1)");
   EXPECT_EQ(map().poles.size(), 2u);
@@ -135,22 +135,22 @@ TEST_F(MapImportApp, TheOriginLiesBetweenPolesOnBothSidesOf180Degrees) {
 }
 
 TEST_F(MapImportApp, OptionsThatTheInventoryHasNoUseForAreRefused) {
-  EXPECT_HAS(failure("a.osm", s_osm, {"--crs", "EPSG:25833"}), "a.osm: places of OpenStreetMap");
-  EXPECT_HAS(failure("a.osm", s_osm, {"--separator", ";"}), "are for CSV files");
+  EXPECT_HAS(failure("a.osm", kOsm, {"--crs", "EPSG:25833"}), "a.osm: places of OpenStreetMap");
+  EXPECT_HAS(failure("a.osm", kOsm, {"--separator", ";"}), "are for CSV files");
   EXPECT_HAS(failure("a.csv", "lon,lat,girth\n13,52,3\n", {"--radius-property", "typo"}),
              "--radius-property: no entry has 'typo', but");
 }
 
 TEST_F(MapImportApp, BadInventoriesAreRefusedWithTheirPlace) {
   EXPECT_HAS(failure("a.txt", ""), "allowed: .csv, .geojson, .json, .osm, .xml");
-  EXPECT_HAS(failure("a.csv", s_utm), "--columns EAST,NORTH");
-  EXPECT_HAS(failure("a.csv", s_utm, {"--separator", ";", "--columns", "UTM33-Nord,Punkt"}),
+  EXPECT_HAS(failure("a.csv", kUtm), "--columns EAST,NORTH");
+  EXPECT_HAS(failure("a.csv", kUtm, {"--separator", ";", "--columns", "UTM33-Nord,Punkt"}),
              "a.csv:2: the place 7023875.72 1 is not in the coordinate system EPSG:4326; --crs");
   EXPECT_HAS(failure("a.csv", "lon,lat\n", {"--crs", "EPSG:1"}), "no pole in it");
   EXPECT_HAS(
-      failure("a.osm", s_osm, {"--keep", "kind=lamps"}),
+      failure("a.osm", kOsm, {"--keep", "kind=lamps"}),
       "no pole in it that --keep keeps; there is kind: lamp (1), light (1), sign (1), tree (1)");
-  EXPECT_HAS(failure("a.osm", s_osm, {"--keep", "art=lamp"}), "no entry has 'art', but ");
+  EXPECT_HAS(failure("a.osm", kOsm, {"--keep", "art=lamp"}), "no entry has 'art', but ");
   EXPECT_HAS(failure("a.csv", "lon,lat\n13,120\n"), "are longitude and latitude swapped?");
   EXPECT_HAS(
       failure("a.csv", "lon,lat\n52,13\n", {"--datum", "52,13"}),
@@ -169,8 +169,8 @@ TEST_F(MapImportApp, BadInventoriesAreRefusedWithTheirPlace) {
   EXPECT_HAS(failure("a.json", R"({"type":"FeatureCollection","features":[{"type":"Feature",
              "geometry":{"type":"MultiPoint","coordinates":[[8,50],[8,51]]}}]})"),
              "no pole in it; features that are no points: 1");
-  EXPECT_EQ(import("a.csv", s_utm, {"--keep", "tree"}).code, 2);
-  EXPECT_EQ(import("a.csv", s_utm, {"--columns", "a"}).code, 2);
+  EXPECT_EQ(import("a.csv", kUtm, {"--keep", "tree"}).code, 2);
+  EXPECT_EQ(import("a.csv", kUtm, {"--columns", "a"}).code, 2);
 }
 
 }  // namespace polemcl::test_map_import_app

@@ -18,7 +18,7 @@ using namespace polemcl::apps;
 using namespace testing_apps;
 
 namespace {
-const std::string s_model = std::string(POLEMCL_SOURCE_DIR) + "/share/models/hdl32e.json";
+const std::string kModel = std::string(POLEMCL_SOURCE_DIR) + "/share/models/hdl32e.json";
 
 class SimulatedPoles : public testing::Test {
  protected:
@@ -100,7 +100,7 @@ TEST_F(SimulatedPoles, WithoutAFolderAreTheSameBytesOnAnyNumberOfThreads) {
 }
 
 TEST_F(SimulatedPoles, DrawnFromAModelAreTheSameBytesOnAnyNumberOfThreads) {
-  configure("detections = " + s_model + "\n", "length_m = 200\n");
+  configure("detections = " + kModel + "\n", "length_m = 200\n");
   tbb::task_arena(1).execute([&] { ASSERT_EQ(run("one.rawlog").code, 0); });
   tbb::task_arena(2).execute([&] { ASSERT_EQ(run("two.rawlog").code, 0); });
   EXPECT_EQ(readText(folder / "one.rawlog"), readText(folder / "two.rawlog"));
@@ -112,7 +112,7 @@ TEST_F(SimulatedPoles, DrawnFromAModelAreTheSameBytesOnAnyNumberOfThreads) {
 }
 
 TEST_F(SimulatedPoles, AppearTogetherWithTruthAndSettings) {
-  configure("scans = 2\ndetections = " + s_model + "\n");
+  configure("scans = 2\ndetections = " + kModel + "\n");
   const testing_disk::DiskCalls calls;
   ASSERT_EQ(run("drive.rawlog").code, 0);
   EXPECT_EQ(
@@ -122,9 +122,9 @@ TEST_F(SimulatedPoles, AppearTogetherWithTruthAndSettings) {
 }
 
 TEST_F(SimulatedPoles, OfAnotherDriveOfTheDayDifferInNoiseOnly) {
-  configure("detections = " + s_model + "\n");
+  configure("detections = " + kModel + "\n");
   ASSERT_EQ(run("a.rawlog").code, 0);
-  configure("drive_seed = 4\ndetections = " + s_model + "\n");
+  configure("drive_seed = 4\ndetections = " + kModel + "\n");
   ASSERT_EQ(run("b.rawlog").code, 0);
   EXPECT_EQ(readText(folder / "a_poles_gt.csv"), readText(folder / "b_poles_gt.csv"));
   const PoleSequence a = read("a.rawlog"), b = read("b.rawlog");
@@ -143,7 +143,7 @@ TEST_F(SimulatedPoles, RefusesAModelOfAnotherLidar) {
   writeText(folder / "street.ini",
             "[sensor]\nmodel = vlp16\nheight_m = 1.0\n[simulation]\n"
             "detections = " +
-                s_model + "\n");
+                kModel + "\n");
   expectFailure(run("p.rawlog"), {"hdl32e.json", "hdl32e", "vlp16", "fit_detections.py"});
   EXPECT_EQ(names(folder.path()), std::vector<std::string>{"street.ini"});
 }
@@ -154,7 +154,7 @@ TEST_F(SimulatedPoles, RefusesAModelThatIsNotThere) {
 }
 
 TEST_F(SimulatedPoles, RefusesScansOfADriveThatHasNone) {
-  configure("detections = " + s_model + "\n");
+  configure("detections = " + kModel + "\n");
   expectFailure(run("p.rawlog", {"--output", at("scans")}), {"detections", "--output"});
 }
 
@@ -169,7 +169,7 @@ TEST_F(SimulatedPoles, WantsToKnowWhatToWrite) {
 }
 
 TEST_F(SimulatedPoles, GiveATableOfSightingsWithoutTheirScans) {
-  configure("detections = " + s_model + "\n");
+  configure("detections = " + kModel + "\n");
   ASSERT_EQ(run("a.rawlog").code, 0);
   const auto sightings = [&](const std::string& rawlog) {
     return runProgram(evalMain, {"sightings", "--poles", at(rawlog), "--output", at("a.csv")});
@@ -187,7 +187,7 @@ TEST_F(SimulatedPoles, GiveATableOfSightingsWithoutTheirScans) {
 
   fs::copy(folder / "a.rawlog", folder / "b.rawlog");
   expectFailure(sightings("b.rawlog"), {"b_config.ini"});
-  configure("scans = 3\ndetections = " + s_model + "\n");
+  configure("scans = 3\ndetections = " + kModel + "\n");
   ASSERT_EQ(run("b.rawlog").code, 0);
   fs::copy(folder / "a.rawlog", folder / "b.rawlog", fs::copy_options::overwrite_existing);
   expectFailure(sightings("b.rawlog"), {"b.rawlog", "scans"});

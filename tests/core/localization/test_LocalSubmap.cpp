@@ -35,7 +35,7 @@ SubmapOptions patient() {
   return options;
 }
 
-const double s_nan = std::nan("");
+const double kNan = std::nan("");
 
 }  // namespace
 
@@ -305,9 +305,9 @@ TEST(LocalSubmap, PolesAreMoreCertainThanItSaysByDefault) {
 TEST(LocalSubmap, RefusesNumbersThatAreNone) {
   LocalSubmap submap;
   submap.add({}, {seen(10, 0)});
-  EXPECT_REFUSED(submap.add({s_nan, 0, 0}, {}), "motion before frame 1");
-  EXPECT_REFUSED(submap.add({0, 0, s_nan}, {}), "motion before frame 1");
-  EXPECT_REFUSED(submap.add({}, {seen(10, 0), seen(s_nan, 0)}), "pole 1 of frame 1");
+  EXPECT_REFUSED(submap.add({kNan, 0, 0}, {}), "motion before frame 1");
+  EXPECT_REFUSED(submap.add({0, 0, kNan}, {}), "motion before frame 1");
+  EXPECT_REFUSED(submap.add({}, {seen(10, 0), seen(kNan, 0)}), "pole 1 of frame 1");
   EXPECT_REFUSED(submap.add({}, {seen(1.1e9, 0)}), "more than 1e9 m away");
   EXPECT_REFUSED(submap.add({}, {seen(10, 0, -0.01)}), "positive semidefinite");
   PoleDetection crooked = seen(10, 0);

@@ -15,7 +15,7 @@ using namespace polemcl;
 
 namespace {
 
-constexpr double s_length = 300;  // m of street
+constexpr double kLength = 300;  // m of street
 
 MapPole standing(double x, double y) {
   return tests::mapPoleAt(x, y, 1e-4);
@@ -36,7 +36,7 @@ std::vector<SessionScan> driveThrough(const std::vector<MapPole>& poles) {
   std::mt19937 random(1);
   const auto noise = [&] { return 0.02 * (random() / 2147483648.0 - 1); };  // m, uniform
   std::vector<SessionScan> scans;
-  for (int i = 0; i <= static_cast<int>(s_length); ++i) {
+  for (int i = 0; i <= static_cast<int>(kLength); ++i) {
     SessionScan scan;
     scan.time = i;
     scan.pose_map_robot = {static_cast<double>(i), 0, 0.1};

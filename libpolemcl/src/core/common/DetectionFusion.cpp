@@ -9,7 +9,7 @@
 namespace polemcl {
 namespace {
 
-constexpr double s_ellipse = 5.991;  ///< 95 % quantile of chi² with two degrees of freedom
+constexpr double kEllipse95 = 5.991;  ///< 95 % quantile of chi² with two degrees of freedom
 
 /// A tenth of a millimetre: a zero covariance would give an infinite weight.
 Eigen::Matrix2d informationOf(const PoleDetection& pole) {
@@ -38,7 +38,7 @@ PoleDetection fusedPole(const PoleDetection& a, const PoleDetection& b, const Ve
   PoleDetection fused = a;
   fused.x = centre.x();
   fused.y = centre.y();
-  fused.covariance = symmetrized<2>(C) * std::max(1.0, squaredSigmas / s_ellipse);
+  fused.covariance = symmetrized<2>(C) * std::max(1.0, squaredSigmas / kEllipse95);
   fused.radius = both[0].radius + share * (both[1].radius - both[0].radius);
   fused.bottom = std::min(a.bottom, b.bottom);
   fused.top = std::max(a.top, b.top);

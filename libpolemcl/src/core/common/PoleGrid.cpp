@@ -155,7 +155,7 @@ void PoleGrid::addCell(const std::vector<Eigen::Vector2d>& points, const Entry* 
   }
   cell.end = static_cast<std::uint32_t>(m_candidates.size());
   std::uint64_t slot = slotOf(cell.key);
-  while (m_cells[slot].key != s_noKey) slot = (slot + 1) & m_mask;
+  while (m_cells[slot].key != kNoKey) slot = (slot + 1) & m_mask;
   m_cells[slot] = cell;
 }
 

@@ -61,11 +61,11 @@ class PoleGrid {
 
  private:
   struct Cell {
-    std::uint64_t key = s_noKey;
+    std::uint64_t key = kNoKey;
     std::uint32_t begin = 0, end = 0;  ///< into m_candidates
   };
   struct Entry;
-  static constexpr std::uint64_t s_noKey = ~std::uint64_t{0};
+  static constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
 
   static double squaredDistance(const Place& place, double x, double y) noexcept {
     const double dx = x - place.x, dy = y - place.y;
@@ -81,7 +81,7 @@ class PoleGrid {
   const Cell* cellOf(std::uint64_t key) const noexcept {
     std::uint64_t slot = slotOf(key);
     while (m_cells[slot].key != key) {
-      if (m_cells[slot].key == s_noKey) return nullptr;
+      if (m_cells[slot].key == kNoKey) return nullptr;
       slot = (slot + 1) & m_mask;
     }
     return &m_cells[slot];

@@ -9,24 +9,24 @@
 namespace polemcl {
 namespace {
 
-constexpr int s_leastPairs = 3;           // fewer determine no motion that can be trusted
-constexpr double s_farthest = 10;         // m, of a motion from the true one
-constexpr double s_clearly = 1.5;         // times the score; three pairs often fit by chance
-constexpr std::size_t s_every = 4;        // scans
-constexpr std::size_t s_beside = 3;       // scans: farthest that confirm a step, on each side
-constexpr double s_poseSigma = 0.02;      // m, as [map] pose_sigma_m
-constexpr double s_headingSigma = 0.002;  // rad, as [map] heading_sigma_deg
-constexpr double s_beyondChance = 16.27;  // 99.9 % of chi-squared with 3 degrees of freedom
+constexpr int kLeastPairs = 3;               // fewer determine no motion that can be trusted
+constexpr double kFarthestMotion = 10;       // m, of a motion from the true one
+constexpr double kClearlyBetter = 1.5;       // times the score; three pairs often fit by chance
+constexpr std::size_t kEvery = 4;            // scans
+constexpr std::size_t kFarthestWitness = 3;  // scans: farthest that confirm a step, on each side
+constexpr double kMapPoseSigma = 0.02;       // m, as [map] pose_sigma_m
+constexpr double kMapHeadingSigma = 0.002;   // rad, as [map] heading_sigma_deg
+constexpr double kBeyondChance = 16.27;      // 99.9 % of chi-squared with 3 degrees of freedom
 // Least size of a step in the poses. Bad timing alone makes smaller errors over four scans.
-constexpr double s_stepMetres = 0.3, s_stepTurn = 0.03;  // m, rad
+constexpr double kStepMetres = 0.3, kStepTurn = 0.03;  // m, rad
 // What tells how the LiDAR is mounted.
-constexpr double s_mostTurn = 0.2;  // rad, within a stretch
-constexpr std::size_t s_leastStretches = 5;
-constexpr double s_aheadWeight = 2e-4;            // rad^2: it stands within 2 m of where it is said
-constexpr double s_leastAside = 0.2, s_sure = 4;  // deg; standard errors: smaller ones are chance
+constexpr double kMostTurn = 0.2;  // rad, within a stretch
+constexpr std::size_t kLeastStretches = 5;
+constexpr double kAheadWeight = 2e-4;           // rad^2: it stands within 2 m of where it is said
+constexpr double kLeastAside = 0.2, kSure = 4;  // deg; standard errors: smaller ones are chance
 // Other scans confirm a step if theirs differs by less, m and share. It differs a little, as poles
 // were deskewed by the poses.
-constexpr double s_sameStep = 0.15, s_sameShare = 0.25;
+constexpr double kSameStep = 0.15, kSameShare = 0.25;
 
 Eigen::Vector3d errorOf(const ScanRegistration& poles, const Pose2D& truth) {
   return {poles.motion.x - truth.x, poles.motion.y - truth.y,
@@ -35,9 +35,10 @@ Eigen::Vector3d errorOf(const ScanRegistration& poles, const Pose2D& truth) {
 
 bool isBeyondChance(const ScanRegistration& poles, const Eigen::Vector3d& error) {
   Eigen::Matrix3d covariance = poles.covariance;
-  covariance.diagonal() += 2 * Eigen::Vector3d(s_poseSigma * s_poseSigma, s_poseSigma * s_poseSigma,
-                                               s_headingSigma * s_headingSigma);
-  return error.dot(covariance.inverse() * error) > s_beyondChance;
+  covariance.diagonal() +=
+      2 * Eigen::Vector3d(kMapPoseSigma * kMapPoseSigma, kMapPoseSigma * kMapPoseSigma,
+                          kMapHeadingSigma * kMapHeadingSigma);
+  return error.dot(covariance.inverse() * error) > kBeyondChance;
 }
 
 std::string decimals(double value, int count) {
@@ -65,19 +66,19 @@ bool isConfirmed(const std::vector<SessionScan>& scans, std::size_t first, const
   const auto isSame = [&](const Stretch& other) {
     const Pose2D off = relative(step, other.step());
     return other.isStep() &&
-           std::hypot(off.x, off.y) < s_sameStep + s_sameShare * std::hypot(step.x, step.y);
+           std::hypot(off.x, off.y) < kSameStep + kSameShare * std::hypot(step.x, step.y);
   };
-  const std::size_t last = first + s_every;
+  const std::size_t last = first + kEvery;
   std::vector<Stretch> neighbours;
   const auto addIfTold = [&](std::size_t before, std::size_t after) {
     const Stretch other(scans[before], scans[after]);
-    if (other.poles.pairs <= s_leastPairs) return false;
+    if (other.poles.pairs <= kLeastPairs) return false;
     neighbours.push_back(other);
     return true;
   };
-  for (std::size_t k = 1; k <= std::min(s_beside, first); ++k)
+  for (std::size_t k = 1; k <= std::min(kFarthestWitness, first); ++k)
     if (addIfTold(first - k, last)) break;
-  for (std::size_t k = 1; k <= s_beside && last + k < scans.size(); ++k)
+  for (std::size_t k = 1; k <= kFarthestWitness && last + k < scans.size(); ++k)
     if (addIfTold(first, last + k)) break;
   return !neighbours.empty() && std::all_of(neighbours.begin(), neighbours.end(), isSame);
 }
@@ -87,25 +88,25 @@ bool isConfirmed(const std::vector<SessionScan>& scans, std::size_t first, const
 ScanRegistration motionOfPoles(const std::vector<PoleDetection>& before,
                                const std::vector<PoleDetection>& after, const Pose2D& truth) {
   RegistrationOptions options;
-  options.maxMetres = s_farthest;
+  options.maxMetres = kFarthestMotion;
   ScanRegistration near = refineMotion(before, after, truth, options);
   if (2 * static_cast<std::size_t>(near.pairs) >= std::min(before.size(), after.size()))
     return near;
   const ScanRegistration far = searchMotion(before, after, truth, options);
-  const bool isBetter = far.pairs > s_leastPairs && far.score > s_clearly * near.score;
+  const bool isBetter = far.pairs > kLeastPairs && far.score > kClearlyBetter * near.score;
   return isBetter && !isShiftedRow(before, after, far, truth) ? far : near;
 }
 
 bool contradictsClearly(const ScanRegistration& poles, const Pose2D& truth) {
   const Eigen::Vector3d error = errorOf(poles, truth);
-  return poles.pairs > s_leastPairs &&
-         (error.head<2>().norm() > s_stepMetres || std::abs(error.z()) > s_stepTurn) &&
+  return poles.pairs > kLeastPairs &&
+         (error.head<2>().norm() > kStepMetres || std::abs(error.z()) > kStepTurn) &&
          isBeyondChance(poles, error);
 }
 
 void MotionCheck::add(const ScanRegistration& poles, const Pose2D& truth, double time,
                       bool isConfirmed) {
-  if (poles.pairs < s_leastPairs) return;
+  if (poles.pairs < kLeastPairs) return;
   ++m_told;
   const Eigen::Vector3d error = errorOf(poles, truth);
   addMounting(poles, truth);
@@ -119,7 +120,7 @@ void MotionCheck::add(const ScanRegistration& poles, const Pose2D& truth, double
 
 void MotionCheck::addMounting(const ScanRegistration& poles, const Pose2D& truth) {
   const double way = std::hypot(truth.x, truth.y);
-  if (way < s_stepMetres || std::abs(truth.yaw) > s_mostTurn || poles.pairs <= s_leastPairs) return;
+  if (way < kStepMetres || std::abs(truth.yaw) > kMostTurn || poles.pairs <= kLeastPairs) return;
   const double aside = (poles.motion.x * truth.y - poles.motion.y * truth.x) / way;
   const Eigen::Vector2d causes(way, truth.yaw);
   ++m_mounting.stretches;
@@ -129,9 +130,9 @@ void MotionCheck::addMounting(const ScanRegistration& poles, const Pose2D& truth
 }
 
 std::string MotionCheck::mountingDoubt() const {
-  if (m_mounting.stretches < s_leastStretches) return "";
+  if (m_mounting.stretches < kLeastStretches) return "";
   Eigen::Matrix2d matrix = m_mounting.matrix;
-  matrix(1, 1) += s_aheadWeight;
+  matrix(1, 1) += kAheadWeight;
   const Eigen::Matrix2d covariance = matrix.inverse();
   const Eigen::Vector2d solution = covariance * m_mounting.vector;
   const double residual = std::max(0.0, m_mounting.square - solution.dot(m_mounting.vector));
@@ -139,7 +140,7 @@ std::string MotionCheck::mountingDoubt() const {
   const double sigma =
       std::sqrt(residual / static_cast<double>(m_mounting.stretches - 2) * covariance(0, 0)) * 180 /
       M_PI;
-  if (std::abs(degrees) < std::max(s_leastAside, s_sure * sigma)) return "";
+  if (std::abs(degrees) < std::max(kLeastAside, kSure * sigma)) return "";
   return "as the poles pass, the LiDAR points " + decimals(std::abs(degrees), 2) + "° (sigma " +
          decimals(sigma, 2) + "°) farther " + (degrees > 0 ? "left" : "right") +
          " than its pose on the vehicle says (--sensor-pose, [sensor] pose)";
@@ -168,9 +169,9 @@ std::string MotionCheck::verdict() const {
 
 MotionCheck checkMotion(const std::vector<SessionScan>& scans) {
   MotionCheck check;
-  for (std::size_t i = 0; i + s_every < scans.size(); i += s_every) {
-    const Stretch stretch(scans[i], scans[i + s_every]);
-    check.add(stretch.poles, stretch.truth, scans[i + s_every].time,
+  for (std::size_t i = 0; i + kEvery < scans.size(); i += kEvery) {
+    const Stretch stretch(scans[i], scans[i + kEvery]);
+    check.add(stretch.poles, stretch.truth, scans[i + kEvery].time,
               !stretch.isStep() || isConfirmed(scans, i, stretch));
   }
   return check;

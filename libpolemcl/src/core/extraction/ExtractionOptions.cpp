@@ -6,7 +6,7 @@
 namespace polemcl {
 namespace {
 
-const Range s_above0 = Range::above(0), s_from0 = Range::atLeast(0), s_0to1 = Range::between(0, 1);
+const Range kAbove0 = Range::above(0), kFrom0 = Range::atLeast(0), k0To1 = Range::between(0, 1);
 
 void bindChoices(Binder& b, RangeImageOptions& o) {
   b.flag("heights_above_ground", o.heightsAboveGround,
@@ -47,17 +47,17 @@ void bindKeys(Binder& b, RangeImageOptions& o) {
   // Cells of 1 m cover the square that the range spans.
   b.number("max_range_m", o.maxRange, Range::aboveUpTo(0, 1000), "m",
            "farther points are not used");
-  b.number("epsilon_m", o.epsilon, s_above0, "m", "greatest step in range inside a cluster");
-  b.integer("min_pixels", o.minPixels, s_from0, "px", "a cluster needs more pixels than this");
+  b.number("epsilon_m", o.epsilon, kAbove0, "m", "greatest step in range inside a cluster");
+  b.integer("min_pixels", o.minPixels, kFrom0, "px", "a cluster needs more pixels than this");
   b.integer("max_width_px", o.maxWidthPx, Range::atLeast(1), "px", "greatest width of a cluster");
-  b.number("foreground", o.foreground, s_0to1, "",
+  b.number("foreground", o.foreground, k0To1, "",
            "least share of a cluster's pixels without a nearer neighbour beside; details = paper: "
            "in front of both neighbours");
   b.number("min_top_m", o.minTop, Range::any(), "m", "least height of a pole's top");
   b.number("max_bottom_m", o.maxBottom, Range::any(), "m", "greatest height of a pole's bottom");
-  b.number("min_height_m", o.minHeight, s_from0, "m", "least distance from bottom to top");
+  b.number("min_height_m", o.minHeight, kFrom0, "m", "least distance from bottom to top");
   b.number("fit_max_z_m", o.fitMaxZ, Range::any(), "m", "greatest height of the points fitted");
-  b.number("free_ring_m", o.freeRing, s_from0, "m", "width of the free space round a pole");
+  b.number("free_ring_m", o.freeRing, kFrom0, "m", "width of the free space round a pole");
   bindChoices(b, o);
 
   b.require(o.rows != 1, "rows", o.rows, "0, or at least 2");
@@ -73,14 +73,14 @@ void bind(Binder& b, ScanLineOptions& o) {
 }
 
 void bindKeys(Binder& b, ScanLineOptions& o) {
-  b.number("min_top_m", o.minTop, s_from0, "m", "least height of a pole's top above local ground");
+  b.number("min_top_m", o.minTop, kFrom0, "m", "least height of a pole's top above local ground");
   b.number("max_range_m", o.maxRange, Range::aboveUpTo(0, 300), "m",
            "poles farther away are not looked for");
-  b.number("min_confidence", o.minConfidence, s_0to1, "",
+  b.number("min_confidence", o.minConfidence, k0To1, "",
            "poles with a lower confidence are refused");
-  b.number("max_radius_m", o.maxRadius, s_above0, "m", "thicker poles are refused");
+  b.number("max_radius_m", o.maxRadius, kAbove0, "m", "thicker poles are refused");
   b.tier(Tier::expert);
-  b.number("min_height_m", o.minHeight, s_from0, "m", "least visible height of a pole");
+  b.number("min_height_m", o.minHeight, kFrom0, "m", "least visible height of a pole");
 
   b.require(o.maxRadius > o.minRadius, "max_radius_m", o.maxRadius, "more than 0.02 m");
 }

@@ -10,9 +10,9 @@
 namespace polemcl {
 namespace {
 
-constexpr double s_pathStep = 4;            ///< m
-constexpr std::size_t s_mostReliable = 80;  ///< the best seen; more would only cost time
-constexpr std::size_t s_mostQueryPoles = 300;
+constexpr double kPathStep = 4;            ///< m
+constexpr std::size_t kMostReliable = 80;  ///< the best seen; more would only cost time
+constexpr std::size_t kMostQueryPoles = 300;
 
 /// Odds that a pole with this number of hits stands on the map. One hit more halves the doubt
 /// whether it is a pole at all, less the more chances it missed.
@@ -23,8 +23,9 @@ double oddsOf(const SubmapPole& pole, const GlobalOptions& options) {
   return p / (1 - p);
 }
 
-constexpr double s_sigmas = 2.5;  ///< of tolerances: 96 % of true matches lie within, in the plane
-constexpr int s_mostUses = 4;  ///< of one query pole in pairs: a false one must not spoil them all
+constexpr double kToleranceSigmas =
+    2.5;                      ///< of tolerances: 96 % of true matches lie within, in the plane
+constexpr int kMostUses = 4;  ///< of one query pole in pairs: a false one must not spoil them all
 
 /// Least hits after `probes` probes. A true place, where six of ten query poles find their pole,
 /// falls short once in a hundred times, and up to `maxPairs` pairs can find it; of chance ones,
@@ -53,12 +54,12 @@ Constellation::Constellation(const LocalSubmap& submap, const GlobalOptions& opt
                    [](const QueryPole& a, const QueryPole& b) {
                      return a.odds != b.odds ? a.odds > b.odds : a.pole->seenAt > b.pole->seenAt;
                    });
-  if (m_queryPoles.size() > s_mostQueryPoles) m_queryPoles.resize(s_mostQueryPoles);
+  if (m_queryPoles.size() > kMostQueryPoles) m_queryPoles.resize(kMostQueryPoles);
   while (m_reliable < m_queryPoles.size() && m_queryPoles[m_reliable].odds > 0) ++m_reliable;
-  for (; m_reliable > s_mostReliable; --m_reliable) m_queryPoles[m_reliable - 1].odds = 0;
+  for (; m_reliable > kMostReliable; --m_reliable) m_queryPoles[m_reliable - 1].odds = 0;
   for (const Eigen::Vector2d& place : submap.path()) {
     const Eigen::Vector2d seen = rotation * (place - here);
-    if (m_path.empty() || (seen - m_path.back()).norm() >= s_pathStep) m_path.push_back(seen);
+    if (m_path.empty() || (seen - m_path.back()).norm() >= kPathStep) m_path.push_back(seen);
   }
 }
 
@@ -97,7 +98,7 @@ double PairTolerance::of(const QueryPole& queryPole) const {
   const double drift = std::min(m_query.driftVariance(queryPole, m_first),
                                 m_query.driftVariance(queryPole, m_second));
   const double variance = m_variance * (0.25 + lever) + own + drift;
-  return std::min(m_map.options.maxTolerance, s_sigmas * std::sqrt(variance));
+  return std::min(m_map.options.maxTolerance, kToleranceSigmas * std::sqrt(variance));
 }
 
 ConstellationSearch::ConstellationSearch(const PreparedMap& map, const Constellation& query)
@@ -119,7 +120,8 @@ std::vector<ConstellationSearch::QueryPair> ConstellationSearch::choosePairs() c
       if (length < options.minBaseline || length > options.maxBaseline) continue;
       const double variance = m_query.relativeVariance(queryPoles[i], queryPoles[j]) +
                               2 * (options.sigma * options.sigma + m_map.meanVariance);
-      const double tolerance = std::min(options.maxTolerance, s_sigmas * std::sqrt(variance));
+      const double tolerance =
+          std::min(options.maxTolerance, kToleranceSigmas * std::sqrt(variance));
       const PairDistanceIndex::Range range =
           m_map.pairs.between(length - tolerance, length + tolerance);
       // A short or a doubtful pair is worth less: many places fit it badly.
@@ -137,7 +139,7 @@ std::vector<ConstellationSearch::QueryPair> ConstellationSearch::choosePairs() c
   std::vector<int> uses(m_query.reliable(), 0);
   std::size_t candidates = 0;
   for (const QueryPair& pair : all) {
-    if (uses[pair.first] >= s_mostUses || uses[pair.second] >= s_mostUses) continue;
+    if (uses[pair.first] >= kMostUses || uses[pair.second] >= kMostUses) continue;
     candidates += 2 * pair.range.size();
     if (chosen.size() >= static_cast<std::size_t>(options.maxPairs) ||
         (!chosen.empty() && candidates > static_cast<std::size_t>(options.maxCandidates)))

@@ -9,10 +9,10 @@
 namespace polemcl {
 namespace {
 
-constexpr int s_refinements = 4;
-constexpr double s_gate = 3;  ///< standard deviations
+constexpr int kRefinements = 4;
+constexpr double kMatchGate = 3;  ///< standard deviations
 /// A match of a pole known worse than this counts for less, m: it could be had by chance.
-constexpr double s_sharp = 0.3;
+constexpr double kSharpSigma = 0.3;
 
 /// J·v, a quarter turn to the left.
 Eigen::Vector2d turnedBy(const Eigen::Vector2d& v) {
@@ -30,7 +30,7 @@ bool PoseRefinement::run(const PoseCandidate& seed, GlobalHypothesis& out) {
   state.pose = seed.pose_map_robot;
   matchSeed(seed, state);
   if (!solve(state)) return false;
-  for (int round = 1; round < s_refinements; ++round) {
+  for (int round = 1; round < kRefinements; ++round) {
     matchGated(state);
     if (!solve(state)) return false;
   }
@@ -78,7 +78,8 @@ void PoseRefinement::matchGated(const State& state) {
     const Eigen::Matrix2d S = uncertainty(queryPole, hit.index, state) +
                               jacobian * state.covariance * jacobian.transpose();
     const Eigen::Vector2d error = m_map.index.tree().point(hit.index) - at;
-    if (error.dot(S.inverse() * error) <= s_gate * s_gate) m_matches.push_back({i, hit.index});
+    if (error.dot(S.inverse() * error) <= kMatchGate * kMatchGate)
+      m_matches.push_back({i, hit.index});
   }
 }
 
@@ -119,7 +120,7 @@ bool PoseRefinement::solve(State& state) const {
 
 void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
   const double most = m_map.options.maxTolerance;
-  const double sharp = s_sharp * s_sharp;
+  const double sharp = kSharpSigma * kSharpSigma;
   newRound();
   out = {};
   for (const QueryPole& queryPole : m_query.queryPoles()) {
@@ -130,7 +131,7 @@ void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
     const Eigen::Vector2d error = m_map.index.tree().point(hit.index) - at;
     const double squared = error.dot(S.inverse() * error);
     // Reliable query poles come first, so none loses its map pole to a doubtful one.
-    if (squared > s_gate * s_gate || !claim(hit.index) || queryPole.odds <= 0) continue;
+    if (squared > kMatchGate * kMatchGate || !claim(hit.index) || queryPole.odds <= 0) continue;
     ++out.matched;
     const double sharpness = std::min(1.0, sharp / std::sqrt(S.determinant()));
     const double alike = m_map.likeness(queryPole.pole->radius, hit.index);

@@ -8,7 +8,7 @@ namespace polemcl {
 namespace {
 
 /// Probability that a radius was measured too wrong to be compared.
-constexpr double s_radiusUnsure = 0.2;
+constexpr double kRadiusUnsure = 0.2;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ PreparedMap::PreparedMap(const std::vector<MapPole>& map, const GlobalOptions& g
 double PreparedMap::likeness(double radius, std::uint32_t pole) const {
   if (!(radius > 0 && radii[pole] > 0)) return 1;
   const double off = (radius - radii[pole]) / options.radiusSigma;
-  return s_radiusUnsure + (1 - s_radiusUnsure) * std::exp(-0.5 * off * off);
+  return kRadiusUnsure + (1 - kRadiusUnsure) * std::exp(-0.5 * off * off);
 }
 
 }  // namespace polemcl

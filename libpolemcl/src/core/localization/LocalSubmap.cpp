@@ -14,11 +14,11 @@
 namespace polemcl {
 namespace {
 
-constexpr double s_submapStep = 1;               ///< m
-constexpr double s_farthest = 5;                 ///< no detection belongs to a pole beyond, m
-constexpr double s_farFromOrigin = 10000;        ///< rounding errors of OdometryDrift grow, m
-constexpr std::uint32_t s_fewChances = 10;       ///< before them nothing is dropped for its misses
-constexpr std::size_t s_mostSubmapPoles = 2000;  ///< the oldest go first; a real drive has a tenth
+constexpr double kSubmapStep = 1;               ///< m
+constexpr double kFarthestMatch = 5;            ///< no detection belongs to a pole beyond, m
+constexpr double kFarFromOrigin = 10000;        ///< rounding errors of OdometryDrift grow, m
+constexpr std::uint32_t kFewChances = 10;       ///< before them nothing is dropped for its misses
+constexpr std::size_t kMostSubmapPoles = 2000;  ///< the oldest go first; a real drive has a tenth
 
 /// A detection in the local frame.
 struct Placed {
@@ -88,10 +88,10 @@ void LocalSubmap::move(const Pose2D& motion, const Eigen::Matrix3d& covariance) 
   m_driven += m_step;
   const Eigen::Vector2d here(m_pose.x, m_pose.y);
   m_drift.add(here, yaw, covariance);
-  if ((here - m_drift.origin()).norm() > s_farFromOrigin) countDriftFrom(here);
+  if ((here - m_drift.origin()).norm() > kFarFromOrigin) countDriftFrom(here);
   // The last place is always the present one; it stays when the one before is far enough away.
   const std::size_t count = m_path.size();
-  if (count < 2 || m_pathDriven[count - 1] - m_pathDriven[count - 2] >= s_submapStep) {
+  if (count < 2 || m_pathDriven[count - 1] - m_pathDriven[count - 2] >= kSubmapStep) {
     m_path.push_back(here);
     m_pathDriven.push_back(m_driven);
   } else {
@@ -115,7 +115,8 @@ void LocalSubmap::associate(const std::vector<PoleDetection>& poles_robot) {
     const Eigen::Matrix2d present = presentCovariance(m_poles[p]);
     for (std::size_t d = 0; d < placed.size(); ++d) {
       const Eigen::Vector2d error = placed[d].centre - m_poles[p].centre;
-      if (poles_robot[d].confidence <= 0 || error.squaredNorm() > s_farthest * s_farthest) continue;
+      if (poles_robot[d].confidence <= 0 || error.squaredNorm() > kFarthestMatch * kFarthestMatch)
+        continue;
       const Eigen::Matrix2d sum = present + placed[d].covariance;
       const double squared = error.dot(sum.inverse() * error);
       if (squared <= m_options.gate * m_options.gate) pairs.push_back({d, p, squared});
@@ -177,11 +178,11 @@ void LocalSubmap::drop() {
   const auto unwanted = [&](const SubmapPole& pole) {
     if (pole.seenAt < oldest) return true;
     return pole.hits < static_cast<std::uint32_t>(m_options.sureHits) &&
-           pole.chances >= s_fewChances && pole.hits < m_options.minShare * pole.chances;
+           pole.chances >= kFewChances && pole.hits < m_options.minShare * pole.chances;
   };
   m_poles.erase(std::remove_if(m_poles.begin(), m_poles.end(), unwanted), m_poles.end());
-  if (m_poles.size() > s_mostSubmapPoles)
-    m_poles.erase(m_poles.begin(), m_poles.end() - static_cast<std::ptrdiff_t>(s_mostSubmapPoles));
+  if (m_poles.size() > kMostSubmapPoles)
+    m_poles.erase(m_poles.begin(), m_poles.end() - static_cast<std::ptrdiff_t>(kMostSubmapPoles));
   const auto first = std::lower_bound(m_pathDriven.begin(), m_pathDriven.end() - 1, oldest);
   const auto count = first - m_pathDriven.begin();
   m_pathDriven.erase(m_pathDriven.begin(), first);

@@ -11,8 +11,8 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;  // x, y, heading
 
-constexpr std::int64_t s_headings = 24;  // cells of modeCellYaw round the circle
-constexpr double s_least = 1e-6;         // share of a cell below which it joins nothing
+constexpr std::int64_t kHeadings = 24;    // cells of modeCellYaw round the circle
+constexpr double kLeastCellShare = 1e-6;  // share of a cell below which it joins nothing
 
 Cell poseCellOf(const Pose2D& pose) {
   const auto index = [](double value, double size) {
@@ -20,7 +20,7 @@ Cell poseCellOf(const Pose2D& pose) {
   };
   const std::int64_t heading = index(wrapAngle(pose.yaw) + M_PI, modeCellYaw);
   return {index(pose.x, modeCell), index(pose.y, modeCell),
-          ((heading % s_headings) + s_headings) % s_headings};
+          ((heading % kHeadings) + kHeadings) % kHeadings};
 }
 
 /// Cells with their weight and the place they belong to.
@@ -50,7 +50,7 @@ void flood(std::map<Cell, Occupied>& cells, const Cell& start, int place) {
     open.pop_back();
     for (int i = 0; i < 27; ++i) {
       const Cell next{cell[0] + i % 3 - 1, cell[1] + i / 3 % 3 - 1,
-                      (cell[2] + i / 9 - 1 + s_headings) % s_headings};
+                      (cell[2] + i / 9 - 1 + kHeadings) % kHeadings};
       const auto found = cells.find(next);
       if (found == cells.end() || found->second.place >= 0) continue;
       found->second.place = place;
@@ -77,7 +77,7 @@ PoseMode heaviestMode(const std::vector<Pose2D>& particles, const std::vector<do
     all[poseCellOf(particles[i])].weight += weights[i];
   std::map<Cell, Occupied> cells;  // a few lost particles are no bridge between places
   for (const auto& [cell, occupied] : all)
-    if (occupied.weight > s_least) cells[cell] = occupied;
+    if (occupied.weight > kLeastCellShare) cells[cell] = occupied;
 
   std::vector<double> shares;
   for (const Pose2D& particle : particles) {

@@ -12,10 +12,10 @@
 namespace polemcl {
 namespace {
 
-constexpr double s_near = 0.4;           // of alike poles, m
-constexpr double s_alike = 0.5;          // least share of pairs that a shifted row finds again
-constexpr int s_rounds = 5;              // of pairing and Gauss-Newton
-constexpr std::size_t s_mostPoles = 24;  // of each scan that a search takes, bounds its time
+constexpr double kAlikeReach = 0.4;     // of alike poles, m
+constexpr double kAlikeShare = 0.5;     // least share of pairs that a shifted row finds again
+constexpr int kPairingRounds = 5;       // of pairing and Gauss-Newton
+constexpr std::size_t kMostPoles = 24;  // of each scan that a search takes, bounds its time
 
 /// The poles of the second scan, in the frame of the first.
 std::vector<MovedCentre> moveAll(const std::vector<PoleDetection>& poles, const Pose2D& motion,
@@ -85,10 +85,10 @@ bool solve(const std::vector<RegistrationPair>& pairs, const std::vector<MovedCe
 
 std::vector<PoleDetection> surest(const std::vector<PoleDetection>& poles) {
   std::vector<PoleDetection> sorted = poles;
-  if (sorted.size() <= s_mostPoles) return sorted;
+  if (sorted.size() <= kMostPoles) return sorted;
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& l, const auto& r) { return l.confidence > r.confidence; });
-  sorted.resize(s_mostPoles);
+  sorted.resize(kMostPoles);
   return sorted;
 }
 
@@ -124,7 +124,7 @@ ScanRegistration judgeMotion(const std::vector<PoleDetection>& before,
 int countNear(const std::vector<PoleDetection>& before, const std::vector<PoleDetection>& after,
               const Pose2D& motion) {
   RegistrationOptions near;
-  near.sigma = near.reach = s_near;
+  near.sigma = near.reach = kAlikeReach;
   return judgeMotion(before, after, motion, near).pairs;
 }
 
@@ -132,7 +132,7 @@ bool isShiftedRow(const std::vector<PoleDetection>& before, const std::vector<Po
                   const ScanRegistration& found, const Pose2D& other) {
   // From where the other motion ends to where this one does, in the frame before.
   const Pose2D shift = compose(found.motion, relative(other, Pose2D()));
-  if (std::hypot(shift.x, shift.y) < 2 * s_near) return false;  // each pole would find itself
+  if (std::hypot(shift.x, shift.y) < 2 * kAlikeReach) return false;  // each pole would find itself
   std::vector<PoleDetection> all = before;
   for (PoleDetection pole : after) {
     const Pose2D place = compose(found.motion, {pole.x, pole.y, 0});
@@ -140,7 +140,7 @@ bool isShiftedRow(const std::vector<PoleDetection>& before, const std::vector<Po
     pole.y = place.y;
     all.push_back(pole);
   }
-  return countNear(all, all, shift) >= s_alike * found.pairs;
+  return countNear(all, all, shift) >= kAlikeShare * found.pairs;
 }
 
 ScanRegistration refineMotion(const std::vector<PoleDetection>& before,
@@ -148,10 +148,10 @@ ScanRegistration refineMotion(const std::vector<PoleDetection>& before,
                               const RegistrationOptions& options) {
   ScanRegistration result;
   result.motion = guess;
-  for (int round = 0; round < s_rounds; ++round) {
+  for (int round = 0; round < kPairingRounds; ++round) {
     // At first all that is within reach, whatever its covariance; at last the gate alone.
     const double open = std::pow(0.25, round);
-    const double gate = round + 1 < s_rounds ? options.gate + 30 * open : options.gate;
+    const double gate = round + 1 < kPairingRounds ? options.gate + 30 * open : options.gate;
     const auto moved = moveAll(after, result.motion, options.sigma);
     if (!solve(pairUp(before, moved, gate, options.reach), moved, result)) break;
   }

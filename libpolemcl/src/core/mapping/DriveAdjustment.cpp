@@ -12,12 +12,12 @@ namespace polemcl {
 namespace {
 
 /// m: greatest distance of a detection from its pole, round by round.
-constexpr double s_pairGates[] = {0.8, 0.5, 0.5, 0.4};
-constexpr int s_steps = 4;            ///< of the least squares, in each round
-constexpr double s_anchorSigmas = 3;  ///< greatest distance from a pole of the map
-constexpr double s_nearAnchor = 0.5;  ///< m: but this at least, for the poses err as well
-constexpr std::size_t s_fewestAnchors = 3;
-constexpr std::size_t s_sampledPoses = 20;  ///< whose standard deviations are looked at
+constexpr double kPairGates[] = {0.8, 0.5, 0.5, 0.4};
+constexpr int kSolverSteps = 4;      ///< of the least squares, in each round
+constexpr double kAnchorSigmas = 3;  ///< greatest distance from a pole of the map
+constexpr double kNearAnchor = 0.5;  ///< m: but this at least, for the poses err as well
+constexpr std::size_t kFewestAnchors = 3;
+constexpr std::size_t kSampledPoses = 20;  ///< whose standard deviations are looked at
 
 class DriveAdjustment {
  public:
@@ -74,18 +74,18 @@ void DriveAdjustment::findAnchors() {
   double variance = 0;
   for (const MapPole& pole : m_map) variance = std::max(variance, pole.covariance.trace() / 2);
   m_anchors = greedyAssignment(m_state.poles, centresOf(m_map),
-                               std::max(s_nearAnchor, s_anchorSigmas * std::sqrt(variance)));
-  if (m_anchors.size() < s_fewestAnchors)
+                               std::max(kNearAnchor, kAnchorSigmas * std::sqrt(variance)));
+  if (m_anchors.size() < kFewestAnchors)
     throw Error("only " + std::to_string(m_anchors.size()) + " of " +
                 std::to_string(m_state.poles.size()) + " poles seen stand near one of the map; " +
-                std::to_string(s_fewestAnchors) + " are needed: are the poses in its frame?");
+                std::to_string(kFewestAnchors) + " are needed: are the poses in its frame?");
   m_factors.anchors.clear();
   for (const AssignedPair& anchor : m_anchors)
     m_factors.anchors.push_back({anchor.first, m_map[anchor.second]});
 }
 
 double DriveAdjustment::sampledSigma(const JointAdjustment& adjustment) const {
-  const std::size_t every = std::max<std::size_t>(1, m_scans.size() / s_sampledPoses);
+  const std::size_t every = std::max<std::size_t>(1, m_scans.size() / kSampledPoses);
   std::vector<std::size_t> sampled;
   for (std::size_t i = 0; i < m_scans.size(); i += every) sampled.push_back(i);
   const Eigen::VectorXd variances = adjustment.poseCovariance(sampled).diagonal();
@@ -96,13 +96,13 @@ double DriveAdjustment::sampledSigma(const JointAdjustment& adjustment) const {
 
 AdjustedDrives DriveAdjustment::run() {
   AdjustedDrives result;
-  for (const double& gate : s_pairGates) {
+  for (const double& gate : kPairGates) {
     findPoles();
     findAnchors();
     pairUp(gate);
     JointAdjustment adjustment(m_scans, m_options.trust, m_factors, m_state);
-    adjustment.solve(s_steps);
-    if (&gate == std::end(s_pairGates) - 1) result.sigma = sampledSigma(adjustment);
+    adjustment.solve(kSolverSteps);
+    if (&gate == std::end(kPairGates) - 1) result.sigma = sampledSigma(adjustment);
   }
   result.poses_map_robot = m_state.poses;
   result.poles = m_state.poles.size();

@@ -9,8 +9,8 @@
 namespace polemcl {
 namespace {
 
-constexpr double s_medianOfTwo = 1.386;  ///< median of chi² with two degrees of freedom
-constexpr double s_ellipse = 9.21;       ///< its 99 % quantile
+constexpr double kMedianOfTwo = 1.386;  ///< median of chi² with two degrees of freedom
+constexpr double kEllipse99 = 9.21;     ///< its 99 % quantile
 
 struct Weighted {
   std::uint32_t member;
@@ -88,7 +88,7 @@ std::vector<bool> inside(const std::vector<double>& squared) {
   std::vector<double> ordered = squared;
   const double middle = elementOfRank(ordered, ordered.size() / 2);
   const double few = 1 + 5 / (2.0 * static_cast<double>(squared.size()) - 2);
-  const double limit = s_ellipse * std::max(1.0, few * few * middle / s_medianOfTwo);
+  const double limit = kEllipse99 * std::max(1.0, few * few * middle / kMedianOfTwo);
   std::vector<bool> inliers(squared.size());
   for (std::size_t i = 0; i < squared.size(); ++i) inliers[i] = squared[i] <= limit;
   return inliers;

@@ -15,7 +15,7 @@ namespace {
 
 using Group = std::vector<std::uint32_t>;
 
-constexpr int s_mostRounds = 10;  ///< assigning and growing usually end after two or three
+constexpr int kMostRounds = 10;  ///< assigning and growing usually end after two or three
 
 void dropEmpty(std::vector<Group>& groups) {
   groups.erase(
@@ -49,7 +49,7 @@ class Clusterer {
 
   std::vector<Group> run() {
     growAll();
-    for (int round = 0; round < s_mostRounds; ++round) {
+    for (int round = 0; round < kMostRounds; ++round) {
       assign();
       if (!mergeNeighbours()) break;
     }
@@ -119,7 +119,7 @@ void Clusterer::growAll() {
 
 Group Clusterer::grow(std::uint32_t seed, const std::vector<bool>& taken) {
   Group group{seed};
-  for (int round = 0; round < s_mostRounds; ++round) {
+  for (int round = 0; round < kMostRounds; ++round) {
     Group next = nearestPerScan(fusedCentre(m_observations, group), taken);
     if (next.empty() || next == group) break;
     group = std::move(next);
@@ -156,7 +156,7 @@ void Clusterer::assign() {
   std::vector<Group> scans(m_nearest.size());
   for (std::uint32_t i = 0; i < m_observations.size(); ++i)
     scans[m_observations[i].scan].push_back(i);
-  for (int round = 0; round < s_mostRounds; ++round) {
+  for (int round = 0; round < kMostRounds; ++round) {
     const KdTree2D tree(observationCentres());
     std::vector<Group> groups(m_groups.size());
     for (const Group& scan : scans) {

@@ -15,8 +15,8 @@ namespace polemcl {
 namespace {
 
 /// m: greatest distance of a pair, round by round. Errors of decimetres must fit into the first.
-constexpr double s_gates[] = {1.5, 1.0, 0.75, 0.5, 0.5, 0.5};
-constexpr int s_roundsWide = 3;          ///< rounds in which the gate widens the covariances
+constexpr double kGates[] = {1.5, 1.0, 0.75, 0.5, 0.5, 0.5};
+constexpr int kRoundsWide = 3;           ///< rounds in which the gate widens the covariances
 constexpr double kHeadingSigma = 0.007;  ///< of the errors of a session's headings, rad
 /// Distance over which the errors of a session are correlated: their correlation falls by e, m.
 constexpr double kLength = 100;
@@ -24,7 +24,7 @@ constexpr double kPiece = 50;  ///< m of path
 /// Least number of map poles seen within a piece. Pieces with fewer follow the pieces beside them.
 constexpr std::size_t kMinPoles = 5;
 /// Squared Mahalanobis distance at which a pair has a quarter of its weight.
-constexpr double s_halfway = 9;
+constexpr double kHalfway = 9;
 
 /// A detection and the map pole that it may be.
 struct Pair {
@@ -122,7 +122,7 @@ Pair Alignment::makePair(std::size_t scan, std::uint32_t detection, std::uint32_
   const Eigen::Vector3d& by = m_corrections[scan];
   const Eigen::Vector2d left =
       pair.error - by.head<2>() - by.z() * Eigen::Vector2d(-pair.arm.y(), pair.arm.x());
-  const double robust = s_halfway / (s_halfway + left.dot(pair.information * left));
+  const double robust = kHalfway / (kHalfway + left.dot(pair.information * left));
   // Scans near each other show a pole from the same side, with the same error.
   const double step = scan > 0 ? m_along[scan] - m_along[scan - 1] : kDecorrelation;
   const double newShare = std::min(1.0, step / kDecorrelation);
@@ -204,8 +204,8 @@ std::vector<SessionScan> Alignment::run(AlignmentSummary* summary) {
   std::vector<SessionScan> scans = m_scans;
   if (scans.empty()) return scans;
   int round = 0;
-  for (const double gate : s_gates) {
-    pairUp(gate, round++ < s_roundsWide ? gate / 3 : 0);
+  for (const double gate : kGates) {
+    pairUp(gate, round++ < kRoundsWide ? gate / 3 : 0);
     dropSparse();
     smooth();
   }

@@ -6,10 +6,10 @@
 namespace polemcl {
 namespace {
 
-constexpr double s_nearest = 1;                    // m; nearer ones may be the vehicle
-constexpr double s_longestStep = 20 * M_PI / 180;  // lasers of one firing look to different sides
-constexpr double s_mostJumps = 0.1;                // share of the steps that are longer
-constexpr double s_least = 90 * M_PI / 180, s_most = 420 * M_PI / 180;  // of a turn
+constexpr double kNearestPoint = 1;               // m; nearer ones may be the vehicle
+constexpr double kLongestStep = 20 * M_PI / 180;  // lasers of one firing look to different sides
+constexpr double kMostJumps = 0.1;                // share of the steps that are longer
+constexpr double kLeastArc = 90 * M_PI / 180, kMostArc = 420 * M_PI / 180;  // of a turn
 
 }  // namespace
 
@@ -19,20 +19,20 @@ std::optional<PointOrder> pointOrder(const PointsView& points) {
   double turned = 0, before = 0;
   for (std::size_t i = 0; i < points.size; ++i) {
     const double x = points.x[i], y = points.y[i];
-    if (!(std::hypot(x, y) > s_nearest)) continue;  // also those that are no numbers
+    if (!(std::hypot(x, y) > kNearestPoint)) continue;  // also those that are no numbers
     const double azimuth = std::atan2(y, x);
     if (steps == 0) order.begin = azimuth;
     const double step = steps == 0 ? 0 : std::remainder(azimuth - before, 2 * M_PI);
     before = azimuth;
     ++steps;
-    if (std::abs(step) < s_longestStep)
+    if (std::abs(step) < kLongestStep)
       turned += step;
     else
       ++jumps;
   }
   order.arc = std::abs(turned);
-  if (order.arc < s_least || order.arc > s_most ||
-      static_cast<double>(jumps) > s_mostJumps * static_cast<double>(steps))
+  if (order.arc < kLeastArc || order.arc > kMostArc ||
+      static_cast<double>(jumps) > kMostJumps * static_cast<double>(steps))
     return std::nullopt;
   order.turn = turned > 0 ? Turn::counterclockwise : Turn::clockwise;
   return order;

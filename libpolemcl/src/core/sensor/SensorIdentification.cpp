@@ -16,22 +16,22 @@ namespace {
 
 // Returns nearer than this and higher over the ground may be the vehicle's own. In clouds that were
 // corrected for motion these are off their beams.
-constexpr double s_vehicleReach = 3;     ///< m, horizontal
-constexpr double s_vehicleBottom = 0.4;  ///< m
-constexpr double s_leastRest = 0.5;      ///< else the near returns are the surroundings, as indoors
+constexpr double kVehicleReach = 3;     ///< m, horizontal
+constexpr double kVehicleBottom = 0.4;  ///< m
+constexpr double kLeastRest = 0.5;      ///< else the near returns are the surroundings, as indoors
 
 PointsCopy withoutVehicle(const PointsView& scan) {
   const auto ground = findGroundPlane(scan);
   PointsCopy rest;
   for (std::size_t i = 0; i < scan.size; ++i) {
     const Eigen::Vector3d point(scan.x[i], scan.y[i], scan.z[i]);
-    if (ground && point.head<2>().norm() < s_vehicleReach && !point.isZero(0) &&
-        ground->heightOf(point) > s_vehicleBottom)
+    if (ground && point.head<2>().norm() < kVehicleReach && !point.isZero(0) &&
+        ground->heightOf(point) > kVehicleBottom)
       continue;
     rest.add(scan, i);
   }
   const auto all = static_cast<double>(scan.size);
-  if (static_cast<double>(rest.x.size()) < s_leastRest * all)
+  if (static_cast<double>(rest.x.size()) < kLeastRest * all)
     return {
         {scan.x, scan.x + scan.size}, {scan.y, scan.y + scan.size}, {scan.z, scan.z + scan.size}};
   return rest;

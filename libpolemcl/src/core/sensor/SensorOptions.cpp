@@ -10,7 +10,7 @@ namespace polemcl {
 namespace {
 
 /// Rings are looked up by the tangent of their elevation.
-const Range s_elevation = Range::between(-89, 89);
+const Range kElevation = Range::between(-89, 89);
 
 void requireTable(const Binder& b, const SensorOptions& o) {
   b.require(o.elevations.size() >= 2, "elevations_deg", static_cast<double>(o.elevations.size()),
@@ -34,15 +34,15 @@ void bindKeys(Binder& b, SensorOptions& o) {
   b.choice("model", o.model, SensorModel::modelNames(),
            "rings of a data sheet, of elevations_deg, or evenly from fov_up_deg to fov_down_deg");
   b.flag("upside_down", o.upsideDown, "true: the elevations of the model change sign");
-  b.anglesDeg("elevations_deg", o.elevations, s_elevation, "rings of model = table");
-  b.anglesDeg("lower_elevations_deg", o.lowerElevations, s_elevation,
+  b.anglesDeg("elevations_deg", o.elevations, kElevation, "rings of model = table");
+  b.anglesDeg("lower_elevations_deg", o.lowerElevations, kElevation,
               "lower block of model = table, for sensors with two blocks");
   b.numbers("apex_m", {&o.upperApex, &o.lowerApex}, Range::any(), "m",
             "heights above the origin where the beams of elevations_deg and of "
             "lower_elevations_deg start");
   b.integer("rings", o.rings, Range::between(2, 1024), "", "number of rings of model = uniform");
-  b.angleDeg("fov_up_deg", o.fovUp, s_elevation, "topmost ring of model = uniform");
-  b.angleDeg("fov_down_deg", o.fovDown, s_elevation, "lowest ring of model = uniform");
+  b.angleDeg("fov_up_deg", o.fovUp, kElevation, "topmost ring of model = uniform");
+  b.angleDeg("fov_down_deg", o.fovDown, kElevation, "lowest ring of model = uniform");
   b.integer("columns", o.columns, Range::between(0, 65536), "",
             "firing steps of a turn; 0: those of the model");
   b.number("height_m", o.height, Range::between(0, 100), "m", "optical centre above ground");

@@ -5,8 +5,8 @@
 namespace polemcl::report {
 namespace {
 
-constexpr double s_short = 10, s_long = 60;  // s
-constexpr std::size_t s_mostTyped = 9;
+constexpr double kShort = 10, kLong = 60;  // s
+constexpr std::size_t kMostTyped = 9;
 
 }  // namespace
 
@@ -33,13 +33,13 @@ void PlayerKeys::take(const KeyPress& press, Playback& playback) {
     case Key::right:
       return playback.step(1);
     case Key::up:
-      return playback.skip(s_short);
+      return playback.skip(kShort);
     case Key::down:
-      return playback.skip(-s_short);
+      return playback.skip(-kShort);
     case Key::pageUp:
-      return playback.skip(s_long);
+      return playback.skip(kLong);
     case Key::pageDown:
-      return playback.skip(-s_long);
+      return playback.skip(-kLong);
     case Key::home:
       return playback.toFirst();
     case Key::end:
@@ -56,7 +56,7 @@ void PlayerKeys::take(const KeyPress& press, Playback& playback) {
 
 void PlayerKeys::takeCharacter(char character, Playback& playback) {
   if ((character >= '0' && character <= '9') || character == '.') {
-    if (m_typed.size() < s_mostTyped) m_typed += character;
+    if (m_typed.size() < kMostTyped) m_typed += character;
     return;
   }
   switch (character) {

@@ -15,12 +15,12 @@ namespace {
 using scene::TColor;
 
 /// Rows of the panel, pixels from its lower edge.
-constexpr double s_stripBottom = 22, s_stripTop = 32, s_curveBottom = 36, s_curveHeight = 60,
-                 s_text = 13, s_margin = 8;
-constexpr double s_left = 0.01, s_right = 0.99;  ///< of the width: where the time line reaches
+constexpr double kStripBottom = 22, kStripTop = 32, kCurveBottom = 36, kCurveHeight = 60,
+                 kText = 13, kMargin = 8;
+constexpr double kLeft = 0.01, kRight = 0.99;  ///< of the width: where the time line reaches
 
 double heightOf(bool withErrors) {
-  return (withErrors ? s_curveBottom + s_curveHeight : s_stripTop) + s_text + 2 * s_margin;
+  return (withErrors ? kCurveBottom + kCurveHeight : kStripTop) + kText + 2 * kMargin;
 }
 
 /// Draws rectangles and texts in a panel, by shares of its width and pixels of its height.
@@ -30,7 +30,7 @@ class PanelPen {
     m_panel.getCamera().setNoProjection();
     m_panel.clearTextMessages();
   }
-  static double x(double share) { return s_left + share * (s_right - s_left); }
+  static double x(double share) { return kLeft + share * (kRight - kLeft); }
   void rectangle(double from, double to, double bottom, double top, const TColor& color) {
     // Without projection, a viewport reaches from -1 to 1.
     const auto corner = [&](double share, double pixels) -> Eigen::Vector3d {
@@ -53,8 +53,8 @@ class PanelPen {
   viz::CSetOfTriangles::Ptr m_faces = viz::CSetOfTriangles::Create();
 };
 
-const TColor s_empty(0xdd, 0xe1, 0xe6), s_area(0xc3, 0xca, 0xd3), s_curve(0x40, 0x48, 0x54),
-    s_mark(0x90, 0x98, 0xa4), s_shown(0x10, 0x10, 0x10);
+const TColor kEmpty(0xdd, 0xe1, 0xe6), kArea(0xc3, 0xca, 0xd3), kCurve(0x40, 0x48, 0x54),
+    kMark(0x90, 0x98, 0xa4), kShown(0x10, 0x10, 0x10);
 
 double endOf(const Playback& playback, std::size_t expected) {
   const double newest = playback.elapsed(playback.newest());
@@ -71,7 +71,7 @@ double markOf(double limit) {
 
 void drawErrors(PanelPen& pen, const TimeLine& line) {
   const auto height = [&](double error) {
-    return s_curveBottom + s_curveHeight * std::min(error / line.limit, 1.0);
+    return kCurveBottom + kCurveHeight * std::min(error / line.limit, 1.0);
   };
   const auto all = static_cast<double>(line.columns.size());
   double before = 0;
@@ -82,13 +82,13 @@ void drawErrors(PanelPen& pen, const TimeLine& line) {
                  to = PanelPen::x(static_cast<double>(i + 1) / all);
     const double top = height(*error);
     const bool joined = i > 0 && line.columns[i - 1].error;
-    pen.rectangle(from, to, s_curveBottom, top, s_area);
+    pen.rectangle(from, to, kCurveBottom, top, kArea);
     pen.rectangle(from, to, std::min(joined ? before : top, top) - 1,
-                  std::max(joined ? before : top, top) + 1, s_curve);
+                  std::max(joined ? before : top, top) + 1, kCurve);
     before = top;
   }
   const double tick = markOf(line.limit);
-  pen.rectangle(s_left, s_right, height(tick), height(tick) + 1, s_mark);
+  pen.rectangle(kLeft, kRight, height(tick), height(tick) + 1, kMark);
 }
 
 void drawHealth(PanelPen& pen, const TimeLine& line) {
@@ -98,8 +98,8 @@ void drawHealth(PanelPen& pen, const TimeLine& line) {
     while (to < columns.size() && columns[to].state == columns[from].state) ++to;
     const auto& state = columns[from].state;
     pen.rectangle(PanelPen::x(static_cast<double>(from) / all),
-                  PanelPen::x(static_cast<double>(to) / all), s_stripBottom, s_stripTop,
-                  state ? live::pathColorOf(*state) : s_empty);
+                  PanelPen::x(static_cast<double>(to) / all), kStripBottom, kStripTop,
+                  state ? live::pathColorOf(*state) : kEmpty);
   }
 }
 
@@ -107,7 +107,7 @@ void drawTimes(PanelPen& pen, const TimeLine& line) {
   const double step = tickStep(line.length, 10);
   for (double tick = 0; tick < 0.97 * line.length; tick += step) {
     const double at = PanelPen::x(tick / line.length);
-    pen.rectangle(at, at + 0.001, s_stripBottom - 4, s_stripBottom, s_curve);
+    pen.rectangle(at, at + 0.001, kStripBottom - 4, kStripBottom, kCurve);
     pen.text(at + 0.002, 7, io::significant(tick, 6) + " s", 10);
   }
 }
@@ -179,13 +179,13 @@ void showTimeLine(viz::Scene& scene, const TimeLine& line, const std::string& wo
   drawHealth(pen, line);
   drawTimes(pen, line);
   const double shown = PanelPen::x(line.shown);
-  pen.rectangle(shown - 0.001, shown + 0.001, s_stripBottom - 4, height - s_text - 2 * s_margin,
-                s_shown);
-  pen.text(s_left, height - s_margin - s_text, words, s_text);
+  pen.rectangle(shown - 0.001, shown + 0.001, kStripBottom - 4, height - kText - 2 * kMargin,
+                kShown);
+  pen.text(kLeft, height - kMargin - kText, words, kText);
   if (withErrors)
-    pen.text(0.5, height - s_margin - s_text,
+    pen.text(0.5, height - kMargin - kText,
              "error of the position; line: " + io::significant(markOf(line.limit), 3) + " m", 11);
-  pen.text(0.89, height - s_margin - s_text, "h: help on keys", 11);
+  pen.text(0.89, height - kMargin - kText, "h: help on keys", 11);
   pen.finish();
 }
 

@@ -9,7 +9,7 @@
 namespace polemcl::report {
 namespace {
 
-constexpr std::size_t s_most = 50000;
+constexpr std::size_t kMost = 50000;
 
 using Points = std::vector<mrpt::math::TPoint3Df>;
 
@@ -39,9 +39,9 @@ Points scanPoints(const std::vector<mrpt::obs::CObservation::Ptr>& sources,
     append(points, *source,
            lidar ? reading.vehicle.lidars[*lidar].extractor() : reading.extraction);
   }
-  if (points.size() <= s_most) return points;
-  for (std::size_t k = 0; k < s_most; ++k) points[k] = points[k * points.size() / s_most];
-  points.resize(s_most);
+  if (points.size() <= kMost) return points;
+  for (std::size_t k = 0; k < kMost; ++k) points[k] = points[k * points.size() / kMost];
+  points.resize(kMost);
   return points;
 }
 

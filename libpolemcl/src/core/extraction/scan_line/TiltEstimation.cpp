@@ -6,26 +6,26 @@
 namespace polemcl {
 namespace {
 
-constexpr float s_mostPrior = 0.4f;  // greatest share of the prior in a tilt that is used
-constexpr double s_own = 0.03;       // standard deviation of a pole's own tilt, m per m
-constexpr double s_sensor = 0.04;    // and of the sensor's
-constexpr double s_outlier = 2;      // sigmas; poles farther off lose weight
-constexpr int s_tiltRounds = 3;
+constexpr float kMostPrior = 0.4f;  // greatest share of the prior in a tilt that is used
+constexpr double kPole = 0.03;      // standard deviation of a pole's own tilt, m per m
+constexpr double kSensor = 0.04;    // and of the sensor's
+constexpr double kOutlier = 2;      // sigmas; poles farther off lose weight
+constexpr int kTiltRounds = 3;
 
 }  // namespace
 
 Eigen::Vector2f estimateTilt(const std::vector<PoleTilt>& poles, const Eigen::Vector2f& upright) {
   const Eigen::Vector2d before = upright.cast<double>();
   Eigen::Vector2d common = before;
-  for (int round = 0; round < s_tiltRounds; ++round) {
-    double weights = 1 / (s_sensor * s_sensor);
+  for (int round = 0; round < kTiltRounds; ++round) {
+    double weights = 1 / (kSensor * kSensor);
     Eigen::Vector2d sum = weights * before;
     for (const PoleTilt& pole : poles) {
-      if (pole.prior > s_mostPrior) continue;
+      if (pole.prior > kMostPrior) continue;
       const double prior = pole.prior;
       const Eigen::Vector2d seen = (pole.tilt.cast<double>() - prior * before) / (1 - prior);
-      const double variance = tiltSigma * tiltSigma * prior / (1 - prior) + s_own * s_own;
-      const double off = (seen - common).squaredNorm() / (s_outlier * s_outlier * variance);
+      const double variance = tiltSigma * tiltSigma * prior / (1 - prior) + kPole * kPole;
+      const double off = (seen - common).squaredNorm() / (kOutlier * kOutlier * variance);
       const double weight = pole.weight / (variance * (1 + off * off));
       weights += weight;
       sum += weight * seen;
