@@ -75,6 +75,7 @@ measure accumulated-cloud result.json accumulated-cloud.json accumulated-cloud.s
 measure range-correction result.json range-correction.json range-correction.sh "$data" "$kilometre" @
 measure paper-parity parity.json paper-parity.json paper-parity.sh "$data/kitti_raw_0005" @
 measure kitti-00 result.json kitti-00.json kitti-00.sh "$data" @
+measure repeatability result.json repeatability.json repeatability.sh "$data" @
 measure pf-localization result.json pf-localization.json pf-localization.sh @
 measure street-7 result.json street-7.json hdl32-street.sh @ 7
 measure consistency result.json consistency.json consistency.sh @
