@@ -17,7 +17,7 @@
 
 namespace polemcl {
 
-/// \brief Constants of the method; tests change some. Measured in share/doc/global.md.
+/// \brief Constants of the method; tests change some.
 struct POLEMCL_EXPORT SubmapOptions {
   double length = 60;  ///< poles not seen over this distance travelled are dropped, m
   double gate = 3.5;   ///< greatest Mahalanobis distance of a detection from its pole
