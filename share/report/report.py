@@ -273,6 +273,10 @@ def main():
     except (OSError, ValueError) as error:
         print(f"report.py: {error}", file=sys.stderr)
         return 1
+    except (AttributeError, IndexError, KeyError, TypeError, jinja2.UndefinedError) as error:
+        print(f"report.py: {folder}: results.json or timings.json is not as pole-batch writes it "
+              f"({type(error).__name__}: {error}); run pole-batch again", file=sys.stderr)
+        return 1
     return 0
 
 

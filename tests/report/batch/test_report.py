@@ -350,6 +350,17 @@ class Usage(unittest.TestCase):
             code, said = self.run_script(folder)
             self.assertEqual((code, said.count("\n"), list(file.parent.iterdir())), (1, 1, [file]))
 
+    def test_refuses_results_that_pole_batch_did_not_write(self):
+        without = [{key: value for key, value in WRITTEN.items() if key != gone}
+                   for gone in ("dataset", "sessions", "settings", "results")]
+        for foreign in [[], 7, "text", {}, {"settings": 3}, {**WRITTEN, "results": [None]}, *without]:
+            with self.subTest(str(foreign)[:40]), tempfile.TemporaryDirectory() as folder:
+                file = pathlib.Path(folder) / "results.json"
+                file.write_text(json.dumps(foreign))
+                code, said = self.run_script(folder)
+                self.assertEqual((code, said.count("\n"), list(file.parent.iterdir())), (1, 1, [file]))
+                self.assertIn("results.json", said)
+
     def test_leaves_no_part_of_a_file_that_it_cannot_write(self):
         with tempfile.TemporaryDirectory() as folder:
             file, table = pathlib.Path(folder) / "results.json", pathlib.Path(folder) / "runs.csv"
