@@ -26,20 +26,22 @@ void print(std::ostream& out, const LidarCounts& lidar) {
         << "[sensor:" << lidar.label << "]\n";
 }
 
-void print(std::ostream& out, const std::string& label, const UntoldTurn& turn) {
-  out << "scans of " << (label.empty() ? "the LiDAR" : label)
-      << " look raw: their points are in the order of measuring, " << name(turn.turn)
-      << ", and begin up to " << io::fixed(turn.arc / degree, 0)
-      << " deg apart; set [sensor] turn = " << name(turn.turn)
-      << ", moving_cut = true to correct them for the motion during a turn, or turn = compensated "
-         "if they are corrected\n";
-}
-
 }  // namespace
+
+std::vector<std::string> rawDoubts(const SequenceCounts& counts) {
+  std::vector<std::string> doubts;
+  for (const auto& [label, turn] : counts.untoldTurns)
+    doubts.push_back("scans of " + (label.empty() ? "the LiDAR" : label) +
+                     " look raw: their points are in the order of measuring, " + name(turn.turn) +
+                     ", and begin up to " + io::fixed(turn.arc / degree, 0) +
+                     " deg apart; set [sensor] turn = " + name(turn.turn) +
+                     ", moving_cut = true to correct them for the motion during a turn, or turn = "
+                     "compensated if they are corrected");
+  return doubts;
+}
 
 void printSensors(std::ostream& out, const SequenceCounts& counts) {
   for (const LidarCounts& lidar : counts.lidars) print(out, lidar);
-  for (const auto& [label, turn] : counts.untoldTurns) print(out, label, turn);
   for (const std::string& label : counts.otherOdometry)
     out << "odometry of a second sensor, not used: " << label << '\n';
   if (counts.otherSensors == 0) return;

@@ -3,15 +3,19 @@
 /// \brief What people and scripts are told of the sensors of a rawlog.
 
 #include <iosfwd>
+#include <string>
+#include <vector>
 
 #include "cli/JsonFile.h"
 #include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 
-/// \brief A line for each LiDAR that was fused, with how well it agrees with the others; for each
-/// whose scans look raw though nothing says so; a line for scans that were not used, with their
-/// sensors and what to write in order to use them.
+/// \brief A sentence for each LiDAR whose scans look raw though nothing says so: a warning.
+std::vector<std::string> rawDoubts(const SequenceCounts& counts);
+
+/// \brief A line for each LiDAR that was fused, with how well it agrees with the others; a line for
+/// scans that were not used, with their sensors and what to write in order to use them.
 void printSensors(std::ostream& out, const SequenceCounts& counts);
 
 /// \brief An object for each LiDAR that was fused, in a list.

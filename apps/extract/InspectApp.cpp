@@ -131,16 +131,20 @@ double clockOffset(const Inspection& inspection) {
   return found.timing.clock - (found.isStated ? inspection.sensor.stated.clock : 0);
 }
 
-/// The turn that the order of the points tells, where scans begin far apart and nothing says that
-/// they are corrected for motion.
-std::optional<ScanTiming> turnOfOrder(const RawlogInspection& scans) {
-  if (beginArc(scans.orders) <= kMovingBegin || scans.isTimed ||
-      scans.sensor.beams.origin.slide != 0)
+/// The turn that the order of the points tells, where nothing says that the scans are corrected for
+/// motion. Where all begin alike, the poles know better, if they were asked.
+std::optional<ScanTiming> turnOfOrder(const Inspection& inspection) {
+  const RawlogInspection& scans = inspection.sensor;
+  const auto isOther = [&](const PointOrder& one) { return one.turn != scans.orders[0].turn; };
+  if (scans.orders.empty() || scans.isTimed || scans.sensor.beams.origin.slide != 0 ||
+      std::any_of(scans.orders.begin(), scans.orders.end(), isOther))
     return std::nullopt;
   ScanTiming timing;
-  timing.turn = scans.orders.front().turn;
-  timing.movingCut = true;
-  return timing;
+  timing.turn = scans.orders[0].turn;
+  timing.cut = scans.orders[0].begin;
+  timing.movingCut = beginArc(scans.orders) > kMovingBegin;
+  const bool asked = inspection.timing && inspection.timing->pairs > 0;
+  return timing.movingCut || !asked ? std::optional(timing) : std::nullopt;
 }
 
 std::string settingsOf(const ScanTiming& timing) {
@@ -148,24 +152,36 @@ std::string settingsOf(const ScanTiming& timing) {
          (timing.movingCut ? "moving_cut = true" : "cut_deg = " + degrees(timing.cut, 0));
 }
 
-/// What may be right though the poles do not show it clearly, or were not asked.
-void printDoubt(std::ostream& out, const Inspection& inspection) {
-  if (inspection.sensor.sensor.onItsHead) return;  // seen from there, it turns the other way
+/// The turn that may be right though the poles do not show it clearly, or were not asked.
+std::optional<ScanTiming> likelyTurn(const Inspection& inspection) {
   const std::optional<TimingEstimate>& found = inspection.timing;
-  std::optional<ScanTiming> likely = turnOfOrder(inspection.sensor);
-  if (likely)
-    out << "                  The points are in the order of measuring, " << name(likely->turn)
-        << ", and begin up to\n                  " << degrees(beginArc(inspection.sensor.orders), 0)
-        << " deg apart, as those of raw scans"
-        << (found ? "; poses found from raw scans hide it.\n" : ".\n");
+  if (inspection.sensor.sensor.onItsHead)  // seen from there, it turns the other way
+    return std::nullopt;
+  if (found && found->candidate.known() && found->turnSignificance >= kHalfSure &&
+      found->withCandidate <= kUsualDistance)
+    return found->candidate;
+  return turnOfOrder(inspection);
+}
+
+void printDoubt(std::ostream& out, const Inspection& inspection) {
+  if (inspection.sensor.sensor.onItsHead) return;
+  const std::optional<TimingEstimate>& found = inspection.timing;
+  if (const auto order = turnOfOrder(inspection)) {
+    out << "                  The points are in the order of measuring, " << name(order->turn)
+        << ", and begin ";
+    if (order->movingCut)
+      out << "up to\n                  " << degrees(beginArc(inspection.sensor.orders), 0)
+          << " deg apart, as those of raw scans"
+          << (found ? "; poses found from raw scans hide it.\n" : ".\n");
+    else
+      out << "at\n                  " << degrees(order->cut, 0) << " deg.\n";
+  }
   if (found && found->candidate.known()) {
     out << "                  Not sure: with " << settingsOf(found->candidate)
         << ", a pole moves by " << io::fixed(found->withCandidate, 4) << " m,\n                  "
         << io::fixed(found->turnSignificance, 1) << " standard errors better (4 are needed).\n";
-    if (found->turnSignificance >= kHalfSure && found->withCandidate <= kUsualDistance)
-      likely = found->candidate;
   }
-  if (likely)
+  if (const auto likely = likelyTurn(inspection))
     out << "                  Unless the scans were corrected for motion, set "
         << settingsOf(*likely) << '\n';
 }
@@ -294,7 +310,12 @@ void searchDrive(const InspectOptions& options, Inspection& result, const ScanPr
   }
   Inspection moving{result.sensor, {}, {}};
   moving.sensor.stated = {};  // it names a single cut
-  if (!searchDrive(options, true, moving, progress)) return;
+  try {
+    if (!searchDrive(options, true, moving, progress)) return;
+  } catch (const Error&) {  // a scan whose points are in another order has no begin
+    searchDrive(options, false, result, progress);
+    return;
+  }
   if (cutAtFirstPoint(moving.timing->timing, orders.front().turn)) {
     result = moving;
     return;
@@ -307,11 +328,18 @@ void searchDrive(const InspectOptions& options, Inspection& result, const ScanPr
     result.timing->candidate = {};  // a single cut, which does not fit them
 }
 
-/// Only what was looked for: all other keys keep their defaults.
-void saveSensor(AllSettings settings, const std::filesystem::path& file) {
+/// Only what was looked for: all other keys keep their defaults. A timing that was not found but
+/// may be right is a comment.
+void saveSensor(const Inspection& inspection, const std::filesystem::path& file) {
+  AllSettings settings = settingsFor(inspection);
   ConfigWriter writer(Tier::tuning);
   bind(writer, settings.sensor);
-  writer.save(file.string());
+  const auto likely = settings.sensor.timing.known() ? std::nullopt : likelyTurn(inspection);
+  io::writeFile(
+      file.string(),
+      (likely ? "# Unless the scans were corrected for motion: " + settingsOf(*likely) + "\n\n"
+              : "") +
+          writer.text());
 }
 
 }  // namespace
@@ -338,7 +366,7 @@ Inspection inspect(const InspectOptions& options, const ScanProgress& progress) 
   Inspection result{inspectRawlog(options.input.string(), options.allowTruncated), {}, {}};
   if (!result.sensor.sensor.onItsHead)  // else poles are not found
     searchDrive(options, result, progress);
-  if (options.writeConfig) saveSensor(settingsFor(result), *options.writeConfig);
+  if (options.writeConfig) saveSensor(result, *options.writeConfig);
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "cli/Messages.h"
 #include "cli/Outputs.h"
 #include "cli/Progress.h"
+#include "cli/SensorCounts.h"
 #include "cli/Settings.h"
 #include "core/common/Angles.h"
 #include "core/common/Binder.h"
@@ -285,6 +286,8 @@ LocalizeResult localize(const LocalizeJob& job) {
     printTable(out, facts, result);
     out << timingsLine(result.timings) << "\nresults in " << job.output.string() << std::endl;
   }
+  for (const std::string& doubt : rawDoubts(drive.counts))
+    std::cerr << warningLine("pole-localize", job.source().string() + ": " + doubt) << '\n';
   if (job.truth) warnOfErrors(result.spreadCheck, *job.truth);
   warnIfLost(result, job);
   view.waitForWindow();

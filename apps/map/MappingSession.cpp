@@ -161,6 +161,7 @@ MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& 
   printSensors(sensors, counts);
   session.skipped = {counts.emptyScans, 0, 0, counts.invalidPoints, counts.truncated,
                      sensors.str()};
+  session.rawDoubts = rawDoubts(counts);
   std::optional<PoseWithCovariance> way;
   for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
     const PoleScan& frame = sequence.frames[i];

@@ -118,6 +118,7 @@ struct MappingSession {
   std::vector<std::optional<PoseWithCovariance>> motions;
   FilledMotions filled;  ///< motions that the odometry did not tell
   SkippedScans skipped;
+  std::vector<std::string> rawDoubts;  ///< rawDoubts() of its LiDARs
 };
 
 /// \brief Reads a rawlog of scans or poles; doubtful detections down to `[map] min_confidence`.

@@ -39,7 +39,7 @@ TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds) 
 }
 
 std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped,
-                        const ScanTiming& timing) {
+                        const ScanTiming& timing, bool looksRaw) {
   if (std::abs(dead.timing.clock) >= kLeastOffset)
     return "the clocks of scans and of odometry or true poses differ: its poles fit better with "
            "[sensor] "
@@ -49,22 +49,22 @@ std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped
                 ? ""
                 : ", or one still farther off: set it and build again");
   const TimingEstimate& found = dead.timing.known() ? dead : mapped;
-  if (!found.timing.known()) return {};
+  if (!found.timing.known() || looksRaw) return {};
   const std::string doubt = "its scans do not look corrected for the motion during a turn" +
                             errors(found.turnSignificance) + ": ";
   const std::string corrected = "check turn, cut_deg, turn_s and the times of the scans";
   if (timing.known()) return doubt + corrected;
   return doubt + "if nothing corrected them, of an upright LiDAR [sensor] turn = " +
          name(found.timing.turn) + " and cut_deg = " + io::fixed(found.timing.cut / degree, 0) +
-         " fit best (pole-extract --inspect tells them, unless it finds no beams); if the rawlog "
-         "states a turn, " +
+         " fit best, or moving_cut = true where each scan begins elsewhere (pole-extract --inspect "
+         "tells them, unless it finds no beams); if the rawlog states a turn, " +
          corrected;
 }
 
 /// Clocks are searched only on a suspicion: it takes much longer.
 std::string timingDoubtOfTruth(const MappingSession& drive, const ScanTiming& timing) {
   if (!searchTiming(timedScans(drive), timing.seconds, {}, false).timing.known()) return {};
-  return timingDoubt(remainingTiming(drive, timing.seconds), {}, timing);
+  return timingDoubt(remainingTiming(drive, timing.seconds), {}, timing, !drive.rawDoubts.empty());
 }
 
 }  // namespace polemcl::apps

@@ -128,7 +128,7 @@ TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
   EXPECT_TRUE(has(outcome.out, "config/hdl32e.ini has settings chosen")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "no odometry between all scans; --truth S.tum")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "`pole-map build --trajectory`, which cannot show")) << outcome.out;
-  EXPECT_FALSE(has(outcome.out, "Unless the scans were corrected")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "set turn = clockwise, cut_deg = -180")) << outcome.out;
   const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.model, "hdl32e");
   EXPECT_NEAR(settings.sensor.height, 1.0, 0.1);
@@ -262,7 +262,13 @@ TEST_F(InspectApp, TheOrderOfThePointsTellsRawScans) {
   importCutAnew("40");
   InspectOptions files;
   files.input = folder / "in.rawlog";
+  files.writeConfig = folder / "found.ini";
   Inspection found = inspect(files);
+  EXPECT_TRUE(
+      has(readText(folder / "found.ini"),
+          "# Unless the scans were corrected for motion: turn = clockwise, moving_cut = true"));
+  EXPECT_FALSE(loadSettings(at("found.ini")).sensor.timing.known());
+  files.writeConfig.reset();
   EXPECT_FALSE(found.timing);
   EXPECT_TRUE(has(printed(found), "in the order of measuring, clockwise")) << printed(found);
   EXPECT_TRUE(has(printed(found), advice)) << printed(found);
@@ -280,7 +286,13 @@ TEST_F(InspectApp, TheOrderOfThePointsTellsRawScans) {
   EXPECT_FALSE(has(printed(onItsHead), "in the order of measuring"));
   Inspection mixed = found;
   mixed.sensor.orders.back().turn = Turn::counterclockwise;
-  EXPECT_FALSE(has(printed(mixed), advice));
+  EXPECT_FALSE(has(printed(mixed), "in the order of measuring"));
+  Inspection alike = found;
+  for (PointOrder& order : alike.sensor.orders) order.begin = M_PI;
+  EXPECT_FALSE(has(printed(alike), "in the order of measuring")) << "the poles do not show it";
+  alike.timing.reset();
+  EXPECT_TRUE(has(printed(alike), "180 deg.\n")) << printed(alike);
+  EXPECT_TRUE(has(printed(alike), "set turn = clockwise, cut_deg = 180")) << printed(alike);
   found.timing->timing.turn = Turn::clockwise;
   EXPECT_FALSE(has(printed(found), advice)) << "the poles show it";
 

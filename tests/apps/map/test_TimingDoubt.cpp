@@ -60,6 +60,7 @@ TEST(TimingDoubt, SeesScansThatWereNotCorrected) {
   const std::string doubt = timingDoubt(found, kNothing, {});
   EXPECT_HAS(doubt, "not look corrected");
   EXPECT_HAS(doubt, "turn = clockwise and cut_deg = 180 ");
+  EXPECT_EQ(timingDoubt(found, kNothing, {}, true), "") << "the order of the points tells the turn";
   // What is left after a correction is no turn to set.
   const std::string after = timingDoubt(found, kNothing, {Turn::clockwise, 0.2, M_PI, 0.5});
   EXPECT_HAS(after, "check turn, cut_deg, turn_s and the times of the scans");

@@ -76,7 +76,7 @@ TEST(PointOrder, AWholeTurnLacksLessThanASixth) {
       y.push_back(static_cast<float>(10 * std::sin(azimuth * M_PI / 180)));
       z.push_back(0);
     }
-    return wholeTurn({x.data(), y.data(), z.data(), x.size()}).has_value();
+    return pointOrder({x.data(), y.data(), z.data(), x.size()}).value().isWhole();
   };
   EXPECT_TRUE(tells(305));
   EXPECT_FALSE(tells(295));

@@ -56,7 +56,7 @@ TEST(PoleSequenceTiming, TheCommentTellsTheTimesOfPoles) {
 }
 
 /// Points of a raw scan of the test place, ordered by azimuth from this one on, clockwise.
-CObservationPointCloud rawCloud(double time, double begin) {
+CObservationPointCloud rawCloud(double time, double begin, double share = 1) {
   CObservationPointCloud scan = cloud(time, 0);
   auto& points = *scan.pointcloud;
   std::vector<std::pair<double, mrpt::math::TPoint3Df>> turn;
@@ -70,6 +70,7 @@ CObservationPointCloud rawCloud(double time, double begin) {
             [](const auto& a, const auto& b) { return a.first < b.first; });
   for (std::size_t i = 0; i < turn.size(); ++i)
     points.setPointFast(i, turn[i].second.x, turn[i].second.y, turn[i].second.z);
+  points.resize(static_cast<std::size_t>(share * static_cast<double>(points.size())));
   scan.sensorLabel = "roof";
   return scan;
 }
@@ -90,6 +91,11 @@ TEST(PoleSequenceTiming, RawScansThatBeginAnywhereAreNoticed) {
   EXPECT_NEAR(turns.at("roof").arc, 0.3, 0.02) << "from the second scan to the fifth";
   EXPECT_TRUE(found(0, options()).empty()) << "a fixed cut";
   EXPECT_TRUE(found(0.3, options(), 3).empty()) << "two scans";
+  std::string log;  // ordinals 1, 2, 4, 8 are looked at
+  for (int i = 0; i < 9; ++i)
+    log += action({1, 0, 0}) + frame(rawCloud(10 + i, 0.3 + 0.1 * i, i == 4 ? 0.6 : 1));
+  EXPECT_EQ(bench.read(log, options()).counts.untoldTurns.count("roof"), 1u)
+      << "returns are missing in one scan";
   SequenceOptions told = options();
   told.extraction.sensor.timing.turn = Turn::compensated;
   EXPECT_TRUE(found(0.1, told).empty());

@@ -380,7 +380,7 @@ void measureSharpness(const std::vector<BeamPoint>& points, const BlockOrigins& 
 
 [[noreturn]] void refuseEstimate(const BeamTableEstimate& estimate) {
   std::ostringstream text;
-  text << std::fixed << std::setprecision(0)
+  text << std::fixed << std::setprecision(1)
        << "no beams: the returns do not lie on cones about the z axis of their frame; of the best "
        << estimate.beams() << " found, only " << 100 * estimate.sharpness
        << " % of the returns lie near one (" << 100 * kLeastSharpness

@@ -38,10 +38,9 @@ std::optional<PointOrder> pointOrder(const PointsView& points) {
   return order;
 }
 
-std::optional<PointOrder> wholeTurn(const PointsView& points) {
+bool PointOrder::isWhole() const {
   constexpr double kNearlyAll = 300 * M_PI / 180;
-  const auto order = pointOrder(points);
-  return order && order->arc >= kNearlyAll ? order : std::nullopt;
+  return arc >= kNearlyAll;
 }
 
 double beginArc(const std::vector<PointOrder>& orders) {

@@ -15,14 +15,14 @@ struct PointOrder {
   Turn turn = Turn::clockwise;  ///< or counterclockwise
   double begin = 0;             ///< azimuth of the first point, rad, frame of the points
   double arc = 0;               ///< of the turn that has points, rad
+  /// Whether less than a sixth of the turn lacks points, so that `begin` is where it was cut.
+  bool isWhole() const;
 };
 
 /// \brief None unless the azimuths of successive points make one turn, or a part of it where
 /// returns are missing: rings one after the other make as many turns as there are, mixed points
 /// none.
 std::optional<PointOrder> pointOrder(const PointsView& points);
-/// \brief The same; none as well where a sixth of the turn or more has no points.
-std::optional<PointOrder> wholeTurn(const PointsView& points);
 
 /// \brief The arc in which turns begin, rad; 0 if they turn different ways, or there are none.
 double beginArc(const std::vector<PointOrder>& orders);

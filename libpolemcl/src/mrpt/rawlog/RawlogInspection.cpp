@@ -51,9 +51,9 @@ void requireBeams(const mrpt::obs::CObservation& scan) {
 std::vector<PointOrder> ordersOf(const std::vector<PointsView>& scans) {
   std::vector<PointOrder> orders;
   for (const PointsView& scan : scans) {
-    const auto order = wholeTurn(scan);
+    const auto order = pointOrder(scan);
     if (!order) return {};
-    orders.push_back(*order);
+    if (order->isWhole()) orders.push_back(*order);
   }
   return orders;
 }

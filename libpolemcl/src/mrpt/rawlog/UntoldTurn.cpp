@@ -9,10 +9,10 @@ bool UntoldTurnSearch::wants(std::size_t ordinal) {
 }
 
 void UntoldTurnSearch::add(const std::optional<PointOrder>& order) {
-  if (order)
-    m_orders.push_back(*order);
-  else
+  if (!order)
     m_isOther = true;
+  else if (order->isWhole())
+    m_orders.push_back(*order);
 }
 
 std::optional<UntoldTurn> UntoldTurnSearch::found() const {
@@ -31,7 +31,7 @@ std::optional<PointOrder> untoldOrder(const mrpt::obs::CObservation& scan,
   const ObservationPoints::Loan loan(points);
   const PointsView cloud = points.read(scan);
   if (points.timing() || points.camera()) return std::nullopt;
-  return wholeTurn(cloud);
+  return pointOrder(cloud);
 }
 
 }  // namespace polemcl

@@ -26,9 +26,9 @@ class UntoldTurnSearch {
   /// \param ordinal 0-based number of the scan. The first one may be cut short.
   static bool wants(std::size_t ordinal);
   /// \brief One of the scans that are wanted.
-  /// \param order wholeTurn() of its points; none also where its timing is told.
+  /// \param order pointOrder() of its points; none also where its timing is told.
   void add(const std::optional<PointOrder>& order);
-  /// \brief None unless at least three scans were looked at and all of them tell the same turn.
+  /// \brief None unless at least three scans were whole turns, and all of them tell the same one.
   std::optional<UntoldTurn> found() const;
 
  private:
