@@ -23,8 +23,7 @@ class EvalTest : public StreetTest {
   /// \brief What the command writes to the file of `--json`.
   nlohmann::json figures(Arguments arguments) const {
     arguments.insert(arguments.end(), {"--json", at("figures.json")});
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome = succeeded(run(arguments));
     return nlohmann::json::parse(outcome.code == 0 ? readText(at("figures.json")) : "null");
   }
   /// \brief Each row: arguments, and words of the one line that refuses them.

@@ -15,7 +15,7 @@ class Feed {
   Feed() { monitor.begin(); }
 
   /// \param share Share of the poles that match. \param poles Number of poles in the scan.
-  Health scan(double share, int poles = 10) {
+  Feed& scan(double share, int poles = 10) {
     HealthInput input;
     input.time = time += period;
     input.metres = metres;
@@ -32,11 +32,12 @@ class Feed {
     input.odometryContradicted = contradicted;
     input.rival = rival;
     input.near = near;
-    return last = monitor.update(input);
+    last = monitor.update(input);
+    return *this;
   }
-  Health scans(int count, double share, int poles = 10) {
+  Feed& scans(int count, double share, int poles = 10) {
     for (int i = 0; i < count; ++i) scan(share, poles);
-    return last;
+    return *this;
   }
   void expect(HealthState state, HealthReason reason) const {
     EXPECT_STREQ(name(last.state), name(state));

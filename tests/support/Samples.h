@@ -4,14 +4,12 @@
 
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
-#include <unistd.h>
 
-#include <cstdint>
-#include <filesystem>
 #include <string>
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include "support/Poles.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::samples {
 
@@ -55,23 +53,5 @@ inline mrpt::serialization::CSerializable::Ptr objectFrom(const std::string& byt
   auto archive = mrpt::serialization::archiveFrom(memory);
   return archive.ReadObject();
 }
-
-/// \brief A temporary folder for one test.
-class Folder {
- public:
-  explicit Folder(const std::string& name)
-      : m_path(std::filesystem::temp_directory_path() /
-               ("polemcl_" + name + "_" + std::to_string(::getpid()))) {
-    std::filesystem::remove_all(m_path);
-    std::filesystem::create_directories(m_path);
-  }
-  ~Folder() { std::filesystem::remove_all(m_path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string operator/(const std::string& name) const { return (m_path / name).string(); }
-
- private:
-  std::filesystem::path m_path;
-};
 
 }  // namespace polemcl::samples

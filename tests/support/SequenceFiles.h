@@ -90,7 +90,7 @@ inline std::string odometry(double time, const CPose2D& pose) {
 }
 
 struct Bench {
-  samples::Folder folder{"PoleSequence"};
+  testing_apps::TempFolder folder;
   std::string path = folder / "s.rawlog";
   PoleSequence read(const std::string& bytes, const SequenceOptions& o = options()) const {
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<long>(bytes.size()));

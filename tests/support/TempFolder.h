@@ -79,6 +79,12 @@ inline Outcome runProgram(const std::function<int(int, const char* const*)>& pro
   return outcome;
 }
 
+/// The outcome of a run that must succeed.
+inline Outcome succeeded(const Outcome& outcome) {
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return outcome;
+}
+
 /// Checks for exit code 1 and one line on stderr with all of these words.
 inline void expectFailure(const Outcome& outcome, const std::vector<std::string>& words) {
   EXPECT_EQ(outcome.code, 1) << outcome.err;

@@ -58,8 +58,7 @@ class Trials : public testing::Test {
   nlohmann::json figures(const std::string& command, Arguments more, const std::string& words) {
     more.insert(more.end(), {"--seed", "3", "--json", city.at("j")});
     const auto once = [&] {
-      const auto outcome = run(command, more);
-      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      const Outcome outcome = succeeded(run(command, more));
       EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
       return readText(city.at("j"));
     };

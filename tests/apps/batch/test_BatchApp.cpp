@@ -314,9 +314,8 @@ TEST_F(BatchApp, RefusesWrongUsage) {
 }
 
 TEST_F(BatchApp, PrintsItsPlan) {
-  const auto outcome =
-      runProgram(batchMain, {(*s_folder / "street-batch.ini").string(), "--dry-run"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome =
+      succeeded(runProgram(batchMain, {(*s_folder / "street-batch.ini").string(), "--dry-run"}));
   EXPECT_NE(outcome.out.find("run.once.s2.01\n  after poles.s2\n  after map.once.s0\n  $ "
                              "pole-localize"),
             std::string::npos)

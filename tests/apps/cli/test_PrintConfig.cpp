@@ -39,15 +39,14 @@ const std::string kKitti = std::string(POLEMCL_SOURCE_DIR) + "/config/kitti.ini"
 }  // namespace
 
 TEST(PrintConfig, PrintsAndEndsWithoutTheOtherArguments) {
-  const Outcome result = run({"--config", kKitti, "--print-config"});
-  EXPECT_EQ(result.code, 0) << result.err;
+  const Outcome result = succeeded(run({"--config", kKitti, "--print-config"}));
   EXPECT_EQ(result.out, settingsText(loadSettings(kKitti), Tier::tuning));
   EXPECT_EQ(result.err, "");
 }
 
 TEST(PrintConfig, PrintsTheExpertSettingsWithAll) {
-  const Outcome result = run({"--print-config", "--all", "--config", kKitti, "--input", "a"});
-  EXPECT_EQ(result.code, 0) << result.err;
+  const Outcome result =
+      succeeded(run({"--print-config", "--all", "--config", kKitti, "--input", "a"}));
   EXPECT_EQ(result.out, settingsText(loadSettings(kKitti)));
 }
 

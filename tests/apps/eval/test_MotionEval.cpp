@@ -61,8 +61,7 @@ class MotionEvalTest : public EvalTest {
     return {"motion", "--poles", at("p.rawlog"), "--truth", at("t.tum"), "--every", every};
   }
   void expectText(const std::string& words, const std::string& every = "4") const {
-    const auto outcome = run(motion(every));
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome = succeeded(run(motion(every)));
     EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
   }
 };

@@ -61,8 +61,7 @@ class ExtractApp : public StreetTest {
 TEST_F(ExtractApp, FindsThePolesOfEveryScan) {
   writeStreet(folder / "in", 4);
   import("in");
-  const auto outcome = run({"--csv", at("poles.csv")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--csv", at("poles.csv")}));
   EXPECT_NE(outcome.out.find("in 4 scans"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("candidates: "), std::string::npos) << outcome.out;
 
@@ -86,8 +85,7 @@ TEST_F(ExtractApp, SaysWhenNoScanHasAPole) {
   writeStreet(folder / "in", 2);
   import("in");
   EXPECT_EQ(run().err.find("warning"), std::string::npos);
-  const auto outcome = run({"--quiet", "--set", "scan_line.min_height_m=50"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--quiet", "--set", "scan_line.min_height_m=50"}));
   EXPECT_EQ(outcome.err, "pole-extract: warning: " + at("in.rawlog") +
                              ": no pole in any of 2 scans: check [sensor] and [extraction]\n");
 }
@@ -95,8 +93,8 @@ TEST_F(ExtractApp, SaysWhenNoScanHasAPole) {
 TEST_F(ExtractApp, TheRangeImageMethodFitsTheSensorByItself) {
   writeStreet(folder / "in", 4);
   import("in");
-  const auto outcome = run({"--csv", at("poles.csv"), "--set", "extraction.method=range_image"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome =
+      succeeded(run({"--csv", at("poles.csv"), "--set", "extraction.method=range_image"}));
   // Rows and borders of another LiDAR find nothing in these scans.
   EXPECT_GE(readCsv(folder / "poles.csv").size(), 12u);
   const auto kitti =
@@ -116,8 +114,7 @@ TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
     all.push_back(scan);
     return runProgram(extractMain, all);
   };
-  const auto outcome = draw("1");
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(draw("1"));
   EXPECT_EQ(readText(folder / "scan.png").substr(1, 3), "PNG");
   expectFailure(draw("2"), {at("in.rawlog"), "no scan 2", "there are 2"});
   expectFailure(runProgram(extractMain, {"--config", config(), "--input", at("poles.rawlog"),
@@ -144,8 +141,7 @@ TEST_F(ExtractApp, DrawsTheStepsOfTheRangeImageMethodOnly) {
   expectFailure(runProgram(extractMain, arguments), {"--range-image", "method = range_image"});
   auto all = arguments;
   all.insert(all.end(), {"--set", "extraction.method=range_image"});
-  const auto outcome = runProgram(extractMain, all);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runProgram(extractMain, all));
   EXPECT_EQ(readText(folder / "range.png").substr(1, 3), "PNG");
 }
 
@@ -154,10 +150,9 @@ TEST_F(ExtractApp, KeepsMotionsTimesAndSensorPose) {
   import("in", true, "0.5 0 0 90 0 0");
   // What scales covariances is applied by whoever localizes, not here too.
   writeText(folder / "factor.ini", readText(config()) + "[motion]\ncovariance_factor = 4\n");
-  const auto outcome =
-      runProgram(extractMain, {"--config", at("factor.ini"), "--input", at("in.rawlog"), "--output",
-                               at("poles.rawlog"), "--quiet"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome =
+      succeeded(runProgram(extractMain, {"--config", at("factor.ini"), "--input", at("in.rawlog"),
+                                         "--output", at("poles.rawlog"), "--quiet"}));
   EXPECT_EQ(outcome.out, "");
   RawlogReader before(at("in.rawlog")), after(at("poles.rawlog"));
   RawlogEntry scan, poles;
@@ -235,8 +230,7 @@ TEST_F(ExtractApp, ScansWithoutPointsKeepTheirPlace) {
   writeStreet(folder / "in", 3);
   writeBin(folder / "in" / "velodyne" / scanName(1), {{0, 0, 0, 0}, {0, 0, 0, 1}});
   import("in", false);  // nobody looked inside so far
-  const auto outcome = run({"--csv", at("poles.csv")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--csv", at("poles.csv")}));
   EXPECT_NE(outcome.out.find("scans without a valid point: 1"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("invalid 2"), std::string::npos) << outcome.out;
   std::map<std::size_t, int> perScan;
@@ -271,8 +265,7 @@ TEST_F(ExtractApp, RefusesATruncatedRawlogUnlessAllowed) {
   EXPECT_EQ(names(folder.path()),
             std::vector<std::string>({"in", "in.rawlog", "in.tum", "poles.rawlog"}));
 
-  const auto outcome = run({"--allow-truncated"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--allow-truncated"}));
   EXPECT_NE(outcome.out.find("in 2 scans"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("ended too early"), std::string::npos) << outcome.out;
 }

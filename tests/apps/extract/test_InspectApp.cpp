@@ -92,13 +92,12 @@ class InspectApp : public StreetTest {
   /// Raw scans of a street of this length, m, as cutAnew() makes them, without odometry:
   /// `in.rawlog`, with their motion in `sim.tum`.
   void importCutAnew(const std::string& length) {
-    const auto simulated = runProgram(
+    const Outcome simulated = succeeded(runProgram(
         simulateMain,
         {"--quiet", "--config", "vlp16.ini", "--length", length, "--output", at("sim"), "--set",
          "simulation.motion_distortion=true", "--set", "simulation.spacing_m=0.8", "--set",
          "simulation.speed_m_s=8", "--set", "sensor.turn=clockwise", "--set",
-         "sensor.range_offset_m=0.1", "--set", "sensor.range_scale=0.995"});
-    ASSERT_EQ(simulated.code, 0) << simulated.err;
+         "sensor.range_offset_m=0.1", "--set", "sensor.range_scale=0.995"}));
     import("sim", false);  // for its true poses
     cutAnew(folder.path(), io::readTum(folder / "sim.tum").size());
     import("in", false);
@@ -120,8 +119,7 @@ std::string printed(const Inspection& inspection) {
 TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
   writeSimulated(folder / "in", "hdl32e", 1.0);
   import("in");
-  const auto outcome = inspectInput({"--write-config", at("found.ini")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(inspectInput({"--write-config", at("found.ini")}));
   EXPECT_TRUE(has(outcome.out, "beams             32")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "fits              model = hdl32e")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "tilt")) << outcome.out;
@@ -135,16 +133,14 @@ TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
   const std::string text = readText(folder / "found.ini");
   EXPECT_TRUE(has(text, "[sensor]") && has(text, "clock_offset_s")) << text;
   EXPECT_FALSE(has(text, "[scan_line]")) << "only what was looked for";
-  const auto extracted = run(
-      {"--config", at("found.ini"), "--input", at("in.rawlog"), "--output", at("poles.rawlog")});
-  EXPECT_EQ(extracted.code, 0) << extracted.err;
+  const Outcome extracted = succeeded(run(
+      {"--config", at("found.ini"), "--input", at("in.rawlog"), "--output", at("poles.rawlog")}));
 }
 
 TEST_F(InspectApp, WritesATableOfTwoBlocks) {
   writeSimulated(folder / "in", "hdl64e", 1.73);
   import("in");
-  const auto outcome = inspectInput({"--write-config", at("found.ini")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(inspectInput({"--write-config", at("found.ini")}));
   EXPECT_TRUE(has(outcome.out, "block of 32 starting")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "no preset")) << outcome.out;
   const AllSettings settings = loadSettings(at("found.ini"));
@@ -158,8 +154,7 @@ TEST_F(InspectApp, WritesATableOfTwoBlocks) {
 TEST_F(InspectApp, UnderstandsASensorPoseThatTurnsCloudsOver) {
   writeSimulated(folder / "in", "hdl32e", 1.0, true);
   import("in", true, "0 0 0 0 0 180");
-  const auto outcome = inspectInput({"--write-config", at("found.ini")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(inspectInput({"--write-config", at("found.ini")}));
   EXPECT_FALSE(has(outcome.out, "upside down       ")) << outcome.out;
   const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.model, "hdl32e");
@@ -169,8 +164,7 @@ TEST_F(InspectApp, UnderstandsASensorPoseThatTurnsCloudsOver) {
 TEST_F(InspectApp, SaysWhenCloudsStandOnTheirHead) {
   writeSimulated(folder / "in", "hdl32e", 1.0, true);
   import("in");
-  const auto outcome = inspectInput();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(inspectInput());
   EXPECT_TRUE(has(outcome.out, "--sensor-pose whose roll is 180 deg")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "not looked for in clouds that are upside down")) << outcome.out;
 }

@@ -93,10 +93,8 @@ class PaperParity : public testing::TestWithParam<DataSet> {
 // of their table, 0.1 mm; 1 % is left for other versions of the mathematical functions.
 TEST_P(PaperParity, FindsThePolesOfTheAuthorsProgram) {
   if (!std::getenv("POLEMCL_DATA")) GTEST_SKIP() << "POLEMCL_DATA is not set";
-  const auto imported = import();
-  ASSERT_EQ(imported.code, 0) << imported.err;
-  const auto extracted = extract(GetParam().config);
-  ASSERT_EQ(extracted.code, 0) << extracted.err;
+  const Outcome imported = succeeded(import());
+  const Outcome extracted = succeeded(extract(GetParam().config));
   // NCLT's files are in the body frame, y to the right.
   const double side = std::string(GetParam().importer) == "nclt" ? -1 : 1;
   const Scans ours = readPoles(folder / "poles.csv", 1);

@@ -95,8 +95,7 @@ TEST_F(ImportApp, ImportsPcdFilesIntoTheRawlog) {
   for (const char* name : {"1.pcd", "2.pcd"})
     writeText(folder / "in" / name,
               "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nDATA ascii\n1 2 3\nnan 0 0\n");
-  const auto outcome = run("pcd");
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("pcd"));
   for (const char* words : {"2 scans; 2 points, 2 invalid", "truth: none",
                             "to localize, give --odometry", "0.1 s apart"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
@@ -113,8 +112,8 @@ TEST_F(ImportApp, ImportsPcdFilesIntoTheRawlog) {
 
 TEST_F(ImportApp, ImportsAFolder) {
   writeLine(folder / "in", 3);
-  const auto outcome = run("folder", {"--every", "2", "--odometry-noise", "0.02", "--seed", "7"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome =
+      succeeded(run("folder", {"--every", "2", "--odometry-noise", "0.02", "--seed", "7"}));
   EXPECT_NE(outcome.out.find("2 scans, 1 left out"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("true motion with noise"), std::string::npos) << outcome.out;
   EXPECT_EQ(names(folder.path()), std::vector<std::string>({"in", "out.rawlog", "out.tum"}));
@@ -125,8 +124,7 @@ TEST_F(ImportApp, ImportsKittiOdometry) {
   // The camera looks along the LiDAR's x: camera x is -y, camera y is -z, camera z is x.
   writeText(folder / "in" / "calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
   writeText(folder / "in" / "poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 2.5\n");
-  const auto outcome = run("kitti-odometry", {"--quiet"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("kitti-odometry", {"--quiet"}));
   EXPECT_EQ(outcome.out, "");
   const auto truth = readText(folder / "out.tum");
   EXPECT_NE(truth.find(" 2.5"), std::string::npos) << truth;
@@ -163,16 +161,14 @@ TEST_F(ImportApp, ImportsKittiRawWithTheCalibrationOfItsDate) {
 
 TEST_F(ImportApp, TakesASensorPoseThatStartsWithAMinus) {
   writeLine(folder / "in", 2);
-  const auto outcome = run("folder", {"--sensor-pose", "-1.5 0 0 0 0 0"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("folder", {"--sensor-pose", "-1.5 0 0 0 0 0"}));
   EXPECT_NE(readText(folder / "out.tum").find(" 1.5"), std::string::npos);
 }
 
 TEST_F(ImportApp, ReportsWhatWasDropped) {
   writeLine(folder / "in", 3);
   writeBin(folder / "in" / "velodyne" / scanName(1), {{0, 0, 0, 0}});
-  const auto outcome = run("folder", {"--embed"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("folder", {"--embed"}));
   EXPECT_NE(outcome.out.find("1 empty ones dropped"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("1 invalid ones dropped"), std::string::npos) << outcome.out;
 }
@@ -226,10 +222,9 @@ TEST_F(ImportApp, WrongUsage) {
 TEST_F(ImportApp, ImportsRealScans) {
   const char* data = std::getenv("POLEMCL_DATA");
   if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
-  const auto outcome =
+  const Outcome outcome = succeeded(
       runProgram(importMain, {"folder", "--input", (fs::path(data) / "kitti_raw_0005").string(),
-                              "--output", (folder / "out.rawlog").string(), "--every", "2"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+                              "--output", (folder / "out.rawlog").string(), "--every", "2"}));
   EXPECT_NE(outcome.out.find(" 40 scans"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("odometry: from the dataset"), std::string::npos) << outcome.out;
 }

@@ -68,8 +68,7 @@ class LabelsApp : public testing::Test {
 
 TEST_F(LabelsApp, MapsTheLabelsOfASequence) {
   writeSequence(5);
-  const auto outcome = run();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run());
   EXPECT_NE(outcome.out.find("2 poles from 350 points in 5 scans"), std::string::npos)
       << outcome.out;
   const auto map = io::readPoleMap(folder / "truth.polemap");

@@ -27,8 +27,7 @@ std::size_t lines(const std::string& text) {
 }  // namespace
 
 TEST_F(LocalizeApp, WritesWhatTheContractSays) {
-  const auto outcome = runWithTruth({"--runs", "2"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runWithTruth({"--runs", "2"}));
   EXPECT_EQ(names(folder / "out"),
             std::vector<std::string>({"config.ini", "run_00.tum", "run_00_cov.csv",
                                       "run_00_errors.csv", "run_00_health.csv", "run_01.tum",
@@ -99,8 +98,7 @@ TEST_F(LocalizeApp, ErrorsBelongToTheScansTheTruthCovers) {
 TEST_F(LocalizeApp, WithoutTruthThereAreNoErrors) {
   writeText(folder / "config.ini",
             readText(folder / "config.ini") + "position_m = 3 -2\n" + "yaw_deg = 22.9\n");
-  const auto outcome = run({"--quiet"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--quiet"}));
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(names(folder / "out"),
             std::vector<std::string>({"config.ini", "run_00.tum", "run_00_cov.csv",
@@ -195,8 +193,7 @@ TEST_F(LocalizeApp, CovarianceAndHealthOfEveryScan) {
 }
 
 TEST_F(LocalizeApp, StartsWhereTheCommandLineSays) {
-  const auto outcome = run({"--start", "3.5,-2.2,22.9,1.5,4"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--start", "3.5,-2.2,22.9,1.5,4"}));
   const auto start = summary()["start"];
   EXPECT_EQ(start["x"], 3.5);
   EXPECT_EQ(start["y"], -2.2);
@@ -278,8 +275,7 @@ TEST_F(LocalizeApp, TruncatedRawlogsOnlyWhenAllowed) {
   const std::string data = readText(folder / "in.rawlog");
   writeText(folder / "in.rawlog", data.substr(0, data.size() - 30));
   expectFailure(runWithTruth(), {"in.rawlog", "truncated"});
-  const auto outcome = runWithTruth({"--allow-truncated"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runWithTruth({"--allow-truncated"}));
   EXPECT_EQ(io::readTum(out("run_00.tum")).size(), scans - 1);
   EXPECT_EQ(summary()["truncated"], true);
   EXPECT_NE(outcome.out.find("truncated"), std::string::npos);
@@ -288,11 +284,10 @@ TEST_F(LocalizeApp, TruncatedRawlogsOnlyWhenAllowed) {
 TEST(LocalizeAppAnywhere, FindsTheVehicleAndTellsFromWhenOn) {
   registerClasses();
   const CityFiles city(80);
-  const auto outcome =
+  const Outcome outcome = succeeded(
       runProgram(localizeMain, {"--config", city.at("city.ini"), "--input", city.at("drive.rawlog"),
                                 "--map", city.at("city.polemap"), "--truth", city.at("drive.tum"),
-                                "--output", city.at("out"), "--global", "--runs", "2"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+                                "--output", city.at("out"), "--global", "--runs", "2"}));
   const auto json = nlohmann::json::parse(readText(city.folder / "out/summary.json"));
   EXPECT_EQ(json["start"], "anywhere");
   EXPECT_EQ(json["runs_without_pose"], 0);
@@ -338,8 +333,7 @@ TEST(LocalizeAppAnywhere, ThePositionFromSatellitesSaysWhereToSearch) {
   writeText(city.folder / "drive.rawlog", drive + fixAt(0, CityFiles::time(0) + 6));
   expectFailure(start("placed.polemap"), {"drive.rawlog", "6.0 s from the first scan"});
   writeText(city.folder / "drive.rawlog", cold + fixAt(8, CityFiles::time(1)) + drive);
-  const auto outcome = start("placed.polemap");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(start("placed.polemap"));
   const auto json = nlohmann::json::parse(readText(city.folder / "out/summary.json"));
   EXPECT_EQ(json["start_source"], "gnss");
   EXPECT_NEAR(json["start"]["x"], begin.x + 8, 0.01);
@@ -362,11 +356,10 @@ TEST(LocalizeAppAnywhere, ThePositionFromSatellitesSaysWhereToSearch) {
 TEST(LocalizeAppAnywhere, ARunThatFindsNothingIsNoErrorButSaysSo) {
   registerClasses();
   const CityFiles city(40), other(5, 99);
-  const auto outcome =
+  const Outcome outcome = succeeded(
       runProgram(localizeMain, {"--config", city.at("city.ini"), "--input", city.at("drive.rawlog"),
                                 "--map", other.at("city.polemap"), "--truth", city.at("drive.tum"),
-                                "--output", city.at("out"), "--global"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+                                "--output", city.at("out"), "--global"}));
   EXPECT_NE(outcome.out.find("1 of 1 runs never found a pose"), std::string::npos);
   EXPECT_HAS(outcome.err, "warning: no pose was ok, most were lost: is ");
   const auto json = nlohmann::json::parse(readText(city.folder / "out/summary.json"));
@@ -380,8 +373,7 @@ TEST_F(LocalizeApp, AGapTooLongForTheOdometryKeepsTheResults) {
   for (std::size_t i = scans / 2; i < scans; ++i) street.frames[i].time += 60;
   street.frames[scans / 2].motion->covariance = 400 * Eigen::Matrix3d::Identity();
   writeRawlog();
-  const auto outcome = run({"--start", "0,0,0,1,5"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--start", "0,0,0,1,5"}));
   const std::string health = readText(out("run_00_health.csv"));
   EXPECT_EQ(lines(health), scans + 1);
   EXPECT_NE(health.find("lost,searching"), std::string::npos);

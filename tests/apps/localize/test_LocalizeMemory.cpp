@@ -41,8 +41,7 @@ class LocalizeMemory : public LocalizeTest {
   std::int64_t peakOf(std::size_t count) {
     writeDrive(count);
     const std::size_t peak = tests::memoryTakenBy([&] {
-      const auto outcome = runWithTruth({"--runs", "2", "--particles", "50"});
-      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      const Outcome outcome = succeeded(runWithTruth({"--runs", "2", "--particles", "50"}));
     });
     EXPECT_EQ(summary()["poses"], count);
     return static_cast<std::int64_t>(peak);

@@ -48,8 +48,7 @@ TEST_F(LocalizePlayer, RunsSideBySideHaveTheBytesOfRunsOneByOne) {
 }
 
 TEST_F(LocalizePlayer, TellsTheLatencyOfEachStage) {
-  const auto outcome = runWithTruth({"--runs", "2"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runWithTruth({"--runs", "2"}));
   const auto json = timings();
   EXPECT_EQ(json["rate"], "max");
   EXPECT_EQ(json["filter_s"].size(), 2u);

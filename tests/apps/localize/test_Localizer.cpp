@@ -55,8 +55,7 @@ TEST_F(LocalizerTest, GivesThePosesOfPoleLocalize) {
   const Pose2D& start = street.truth.front();
   const std::string text = std::to_string(start.x) + "," + std::to_string(start.y) + "," +
                            std::to_string(start.yaw * 180 / M_PI) + ",0.5,3";
-  const Outcome outcome = run({"--start", text});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--start", text}));
   const auto expected = io::planar(io::readTum(out("run_00.tum")));
   ASSERT_EQ(expected.size(), scans);
   Localizer own(Settings(out("config.ini").string()), folder / "map.polemap");

@@ -172,10 +172,9 @@ class PaperModeOnKitti : public testing::Test {
   std::vector<std::vector<PoleDetection>> ourPoles(const AllSettings& settings) const {
     const TempFolder folder;
     const std::string rawlog = (folder / "all.rawlog").string();
-    const auto outcome =
-        runProgram(importMain,
-                   {"folder", "--input", (m_data / "kitti_raw_0005").string(), "--output", rawlog});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome =
+        succeeded(runProgram(importMain, {"folder", "--input", (m_data / "kitti_raw_0005").string(),
+                                          "--output", rawlog}));
     SequenceOptions options;
     options.extraction = settings.poleExtraction();
     std::vector<std::vector<PoleDetection>> poles;

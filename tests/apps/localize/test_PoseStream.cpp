@@ -55,8 +55,7 @@ TEST_F(PoseStream, TellsWhatTheFilesTell) {
 }
 
 TEST_F(PoseStream, LeavesNothingElseOnStandardOutput) {
-  const auto outcome = run({"--global", "--stream", "-"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--global", "--stream", "-"}));
   const auto all = lines(outcome.out);
   ASSERT_EQ(all.size(), scans);
   EXPECT_TRUE(all[0]["x_m"].is_null()) << "the pose is not known yet";

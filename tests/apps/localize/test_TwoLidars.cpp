@@ -42,8 +42,7 @@ class TwoLidars : public LocalizeTest {
 };
 
 TEST_F(TwoLidars, ArePolesOfOneScan) {
-  const auto outcome = runWithTruth();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runWithTruth());
   const auto json = summary();
   EXPECT_EQ(json["scans"], scans);
   ASSERT_EQ(json["lidars"].size(), 2u);
@@ -81,8 +80,7 @@ TEST(SensorCounts, SayThatScansLookRaw) {
 }
 
 TEST_F(TwoLidars, WithoutNamesTheFirstIsUsedAndTheOtherIsNamed) {
-  const auto outcome = runWithTruth({"--set", "vehicle.lidars="});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runWithTruth({"--set", "vehicle.lidars="}));
   EXPECT_HAS(outcome.out,
              "scans of other sensors, not used: 39 (polemcl::CObservationPoles rear); "
              "[vehicle] lidars lists the sensor labels to use");

@@ -82,16 +82,14 @@ TEST_F(DriveDoubts, ManyMotionsThatNothingTellsGiveAWarning) {
   for (int i = 0; i < 30; ++i) times += io::fixed(50 + 0.1 * i, 3) + '\n';
   writeText(folder / "in" / "times.txt", times);
   import("in");
-  const auto whole = buildWithoutTruth();
-  ASSERT_EQ(whole.code, 0) << whole.err;
+  const Outcome whole = succeeded(buildWithoutTruth());
   const float ground[] = {10, 0, -1.7F, 0};
   EXPECT_EQ(whole.err.find("neither odometry nor poles"), std::string::npos) << whole.err;
   for (std::size_t i = 10; i < 15; ++i)
     writeText(folder / "in" / "velodyne" / scanName(i),
               {reinterpret_cast<const char*>(ground), 16});
   import("in");
-  const auto blind = buildWithoutTruth();
-  ASSERT_EQ(blind.code, 0) << blind.err;
+  const Outcome blind = succeeded(buildWithoutTruth());
   EXPECT_HAS(blind.err, "warning: in.rawlog: neither odometry nor poles tell 5 of its 29 motions");
   EXPECT_HAS(blind.out, "5 go on as before: look there, the first at 51.000 s");
 }
@@ -99,8 +97,7 @@ TEST_F(DriveDoubts, ManyMotionsThatNothingTellsGiveAWarning) {
 TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
   writeStreet(folder / "in", 30);
   import("in");
-  const auto right = buildWithoutTruth();
-  ASSERT_EQ(right.code, 0) << right.err;
+  const Outcome right = succeeded(buildWithoutTruth());
   EXPECT_EQ(right.err, "");
   EXPECT_EQ(info().count("warnings"), 0u);
   std::string rows;
@@ -109,8 +106,7 @@ TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
     rows += (++row == 15 ? "2.7 0 0 0.02 0.01 0.003" : line) + '\n';
   writeText(folder / "in" / "odometry.txt", rows);
   import("in");
-  const auto slipped = buildWithoutTruth();
-  ASSERT_EQ(slipped.code, 0) << slipped.err;
+  const Outcome slipped = succeeded(buildWithoutTruth());
   EXPECT_HAS(slipped.err,
              "warning: in.rawlog: the poles contradict 1 of the 29 motions of its odometry, the "
              "first at 53.000 s");
@@ -145,16 +141,14 @@ TEST_F(DriveDoubts, ALidarThatIsTurnedIsTold) {
 
 TEST_F(DriveDoubts, PositionsOfAnotherClockAreTold) {
   driveWithFixes(60);
-  const auto right = buildWithoutTruth({"--gnss", at("fixes.csv")});
-  ASSERT_EQ(right.code, 0) << right.err;
+  const Outcome right = succeeded(buildWithoutTruth({"--gnss", at("fixes.csv")}));
   EXPECT_EQ(right.err, "");
   EXPECT_HAS(right.out, "placed by 59 positions from satellites;");
   EXPECT_HAS(right.out, "in.rawlog: its 59 positions from satellites lie 0.0");
   EXPECT_HAS(right.out, "m from its path (median), 0 of them do not fit");
   EXPECT_EQ(info().at("fixes"), "59");
   writeFixes([](double x) { return x < 25 ? x : std::min(2 * x - 25, 55.0); });
-  const auto late = buildWithoutTruth({"--gnss", at("fixes.csv")});
-  ASSERT_EQ(late.code, 0) << late.err;
+  const Outcome late = succeeded(buildWithoutTruth({"--gnss", at("fixes.csv")}));
   EXPECT_HAS(late.err, "of 59 positions from satellites do not fit its path, they lie ");
   EXPECT_HAS(late.err, "may lie wrong on Earth by far more");
   EXPECT_GT(certainTo(late.out), 5 * certainTo(right.out));
@@ -180,8 +174,7 @@ TEST_F(DriveDoubts, PositionsBetweenScansThatAreLateButNearAreUsed) {
   writeText(folder / "in" / "times.txt", slow);
   import("in");
   writeFixes([](double x) { return x; });
-  const auto near = buildWithoutTruth({"--gnss", at("fixes.csv")});
-  ASSERT_EQ(near.code, 0) << near.err;
+  const Outcome near = succeeded(buildWithoutTruth({"--gnss", at("fixes.csv")}));
   EXPECT_HAS(near.out, "placed by 59 positions");
   EXPECT_EQ(near.out.find("left out"), std::string::npos) << near.out;
 }
@@ -190,8 +183,7 @@ TEST_F(DriveDoubts, PositionsBetweenScansThatAreLateButNearAreUsed) {
 TEST_F(DriveDoubts, PositionsBetweenScansFarApartAreCounted) {
   driveWithFixes(60);
   leaveOut(30, 44);
-  const auto gap = buildWithoutTruth({"--gnss", at("fixes.csv")});
-  ASSERT_EQ(gap.code, 0) << gap.err;
+  const Outcome gap = succeeded(buildWithoutTruth({"--gnss", at("fixes.csv")}));
   EXPECT_HAS(gap.out, "placed by 44 positions");
   EXPECT_HAS(gap.out,
              "in.rawlog: left out 15 positions from satellites between scans more than 2 s and 10 "

@@ -53,7 +53,7 @@ class GeoJson : public testing::Test {
     EXPECT_EQ(message.rfind(file, 0), 0u) << message;
     return message;
   }
-  samples::Folder folder{"GeoJson"};
+  testing_apps::TempFolder folder;
 };
 
 std::string multiPoint(const std::string& places) {

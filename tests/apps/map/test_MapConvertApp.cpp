@@ -54,8 +54,8 @@ TEST_F(MapConvertApp, GoesThroughEveryKindOfFile) {
        {"a.geojson", "b.csv", "c.polemap", "d.csv", "e.geojson", "f.polemap"}) {
     SCOPED_TRACE(to);
     const bool needsDatum = to == "a.geojson" || to == "e.geojson";
-    const auto outcome = convert(from, to, needsDatum ? datum : std::vector<std::string>());
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome =
+        succeeded(convert(from, to, needsDatum ? datum : std::vector<std::string>()));
     EXPECT_NE(outcome.out.find(to + ": 5 poles"), std::string::npos) << outcome.out;
     from = to;
   }
@@ -85,8 +85,7 @@ TEST_F(MapConvertApp, ReadsMapAndScansAtOnceAsAnotherMayReplaceThem) {
 }
 
 TEST_F(MapConvertApp, GivesAMapItsDatumAndKeepsTheRest) {
-  const auto outcome = convert("m.polemap", "m.polemap", {"--datum", "50,8"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(convert("m.polemap", "m.polemap", {"--datum", "50,8"}));
   std::optional<AddedSessions> kept;
   const auto map = io::readPoleMap(folder / "m.polemap", &kept);
   EXPECT_EQ(map.info.at("datum"), "50,8,0");

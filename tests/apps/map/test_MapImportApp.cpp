@@ -65,8 +65,7 @@ TEST_F(MapImportApp, TablesInUtmKeepDistancesAndRadii) {
   std::vector<std::string> options = s_utmOptions;
   options.insert(options.end(), {"--radius-property", "Umfang cm", "--radius-unit", "0.00159155",
                                  "--sigma-m", "0.3"});
-  const Outcome outcome = import("a.csv", s_utm, options);
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(import("a.csv", s_utm, options));
   EXPECT_HAS(outcome.out, "2 poles");
   EXPECT_HAS(outcome.out, "left out: 1");
   const auto data = map();
@@ -93,8 +92,7 @@ TEST_F(MapImportApp, PointsOfGeoJsonWithOtherPeoplesProperties) {
       {"type":"Feature","geometry":{"type":"Point","coordinates":[13.0001,52]},
        "properties":{"art":"Bank"}}]})";
   const Outcome outcome =
-      import("a.geojson", json, {"--keep", "art=Mast", "--datum", "52,12.9999,90"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+      succeeded(import("a.geojson", json, {"--keep", "art=Mast", "--datum", "52,12.9999,90"}));
   EXPECT_HAS(outcome.out, "not kept: 2");
   const auto data = map();
   ASSERT_EQ(data.poles.size(), 1u);

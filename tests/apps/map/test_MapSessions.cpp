@@ -69,8 +69,7 @@ class MapSessions : public StreetTest {
 }  // namespace
 
 TEST_F(MapSessions, ThePaperTakesLaterSessionsWhereNobodyHasBeen) {
-  const auto outcome = map("paper.ini", {"one", "two", "three"}, "m.polemap");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(map("paper.ini", {"one", "two", "three"}, "m.polemap"));
   const auto info = io::readPoleMap(folder / "m.polemap").info;
   // One ends at 11 m: two has nothing beyond 21 m; two ends at 17 m: three is new beyond 27 m.
   EXPECT_EQ(info.at("f_map.one"), "1.000000");
@@ -86,8 +85,7 @@ TEST_F(MapSessions, ThePaperTakesLaterSessionsWhereNobodyHasBeen) {
 }
 
 TEST_F(MapSessions, EverythingIsUsedUnlessAsked) {
-  const auto outcome = map("all.ini", {"one", "three"}, "m.polemap");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(map("all.ini", {"one", "three"}, "m.polemap"));
   EXPECT_EQ(io::readPoleMap(folder / "m.polemap").info.at("f_map.three"), "1.000000");
   EXPECT_EQ(chunk("m.polemap", "SCAN"), "");
 }
@@ -100,8 +98,8 @@ TEST_F(MapSessions, AddedOneByOneTheyGiveTheMapOfAllAtOnce) {
     ASSERT_EQ(map(ini, {"one"}, "m.polemap", {"--keep-scans", "--date", days[1]}).code, 0);
     ASSERT_EQ(map(ini, {"three"}, "m.polemap", {"--add", at("m.polemap"), "--date", days[2]}).code,
               0);
-    const auto last = map(ini, {"two"}, "m.polemap", {"--add", at("m.polemap"), "--date", days[3]});
-    ASSERT_EQ(last.code, 0) << last.err;
+    const Outcome last =
+        succeeded(map(ini, {"two"}, "m.polemap", {"--add", at("m.polemap"), "--date", days[3]}));
     EXPECT_EQ(chunk("m.polemap", "POLE"), chunk("all.polemap", "POLE"));
     EXPECT_EQ(chunk("m.polemap", "INFO"), chunk("all.polemap", "INFO"));
     EXPECT_GT(chunk("m.polemap", "POLE").size(), 500u);

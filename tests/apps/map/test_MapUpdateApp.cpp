@@ -36,11 +36,10 @@ class MapUpdateApp : public StreetTest {
   }
   void mapYesterday() {
     drive("day0", yesterday);
-    const auto outcome =
-        runProgram(mapMain, {"build", "--config", config(), "--input", at("day0.rawlog"), "--truth",
-                             at("day0.tum"), "--date", "2026-03-01", "--output", at("day0.polemap"),
-                             "--csv", at("m.csv")});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome =
+        succeeded(runProgram(mapMain, {"build", "--config", config(), "--input", at("day0.rawlog"),
+                                       "--truth", at("day0.tum"), "--date", "2026-03-01",
+                                       "--output", at("day0.polemap"), "--csv", at("m.csv")}));
   }
   Outcome update(const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments{"update",           "--config", config(),          "--map",
@@ -98,9 +97,8 @@ TEST_F(MapUpdateApp, AFreshMapTellsWhenItsPolesWereSeen) {
 TEST_F(MapUpdateApp, TheMapFollowsTheStreet) {
   mapYesterday();
   drive("day1", today);
-  const auto outcome =
-      update({"--date", "2026-03-02", "--csv", at("new.csv"), "--scene", at("new.3Dscene")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(
+      update({"--date", "2026-03-02", "--csv", at("new.csv"), "--scene", at("new.3Dscene")}));
   const auto before = io::readPoleMap(folder / "day0.polemap").poles;
   const auto after = io::readPoleMap(folder / "day1.polemap");
   ASSERT_TRUE(has(before, 9, 6) && has(before, 13, -7));
@@ -120,10 +118,9 @@ TEST_F(MapUpdateApp, ListsAndDrawsWhatChanged) {
   mapYesterday();
   drive("day1", today);
   ASSERT_EQ(update().code, 0);
-  const auto outcome =
+  const Outcome outcome = succeeded(
       runProgram(mapMain, {"diff", at("day0.polemap"), at("day1.polemap"), "--png", at("d.png"),
-                           "--scene", at("d.3Dscene"), "--csv", at("d.csv")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+                           "--scene", at("d.3Dscene"), "--csv", at("d.csv")}));
   EXPECT_NE(outcome.out.find("1 vanished, 1 moved"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("(1.0"), std::string::npos) << outcome.out;
   const std::string csv = readText(folder / "d.csv");
@@ -191,8 +188,7 @@ TEST_F(MapUpdateApp, TakesTheLocalizersOwnPoses) {
   ASSERT_EQ(update({"--json", at("truth.json")}).code, 0);
   const std::string byTruth = readText(folder / "day1.polemap");
   writeRun("ok", 1e-6);
-  const auto outcome = updateByRun({"--json", at("update.json")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(updateByRun({"--json", at("update.json")}));
   const auto after = io::readPoleMap(folder / "day1.polemap");
   EXPECT_TRUE(has(after.poles, 9, 7));
   EXPECT_FALSE(has(after.poles, 13, -7));
@@ -213,8 +209,7 @@ TEST_F(MapUpdateApp, DoubtfulPosesDoNotChangeTheMap) {
   writeRun("ok", 0.09);  // 0.3 m
   expectFailure(updateByRun(), {"day1.rawlog", "all 25 poses", "above 0.25 m"});
   writeRun("ok", 1e-6, 7);
-  const auto outcome = updateByRun();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(updateByRun());
   EXPECT_NE(outcome.out.find("not ok, not used: 7"), std::string::npos) << outcome.out;
   writeRun("ok", 1e-6, 0, 5);
   expectFailure(updateByRun(), {"run_00.tum", "scan 0", "is it a run over this rawlog"});
@@ -248,8 +243,7 @@ TEST_F(MapUpdateApp, AnInventoryBecomesAsExactAsTheLidar) {
                                        at("exact.polemap")};
   auto arguments = build;
   arguments.insert(arguments.end(), {"--estimate", at("run_00.tum")});
-  const auto outcome = runProgram(mapMain, arguments);
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runProgram(mapMain, arguments));
   EXPECT_NE(outcome.out.find("out of sight, kept: 1"), std::string::npos) << outcome.out;
   const auto map = io::readPoleMap(folder / "exact.polemap");
   EXPECT_EQ(map.info.at("datum"), "52,13,0");
@@ -283,8 +277,7 @@ TEST_F(MapUpdateApp, AnInventoryBecomesAsExactAsTheLidar) {
 TEST_F(MapUpdateApp, WarnsWhenManyPolesHaveMoved) {
   mapYesterday();
   drive("day1", today);  // 1 of about 12 moved
-  const auto outcome = update({"--quiet", "--json", at("update.json")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(update({"--quiet", "--json", at("update.json")}));
   EXPECT_NE(outcome.err.find("pole-map: warning: "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("seem to have moved"), std::string::npos) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);

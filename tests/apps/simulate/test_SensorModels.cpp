@@ -124,8 +124,7 @@ TEST(SensorModelsOfDetections, AModelServesTheBeamsItWasFittedFor) {
                   "\n[world]\nlength_m = 40\n");
     return runProgram(simulateMain, {"--config", at("s.ini"), "--poles", at("p.rawlog")});
   };
-  const Outcome same = simulate("12 4 -2 -8");
-  EXPECT_EQ(same.code, 0) << same.err;
+  const Outcome same = succeeded(simulate("12 4 -2 -8"));
   expectFailure(simulate("12 4 -2 -9"),
                 {"m.json", "table of 4 beams from 12 to -8 deg",
                  "table of 4 beams from 12 to -9 deg", "fit_detections.py"});

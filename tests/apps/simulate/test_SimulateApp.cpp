@@ -30,8 +30,7 @@ class SimulateApp : public testing::Test {
 
 TEST_F(SimulateApp, WritesTheFolderLayoutAndTheEffectiveSettings) {
   const Outcome outcome =
-      run({"--seed", "7", "--day", "2", "--length", "50", "--sensor", "os1_64"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+      succeeded(run({"--seed", "7", "--day", "2", "--length", "50", "--sensor", "os1_64"}));
   EXPECT_NE(outcome.out.find("3 scans over 1.0 m"), std::string::npos) << outcome.out;
   EXPECT_EQ(names(folder / "drive"),
             (std::vector<std::string>{"config.ini", "labels", "odometry.txt", "poles_gt.csv",

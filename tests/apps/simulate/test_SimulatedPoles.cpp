@@ -174,8 +174,7 @@ TEST_F(SimulatedPoles, GiveATableOfSightingsWithoutTheirScans) {
   const auto sightings = [&](const std::string& rawlog) {
     return runProgram(evalMain, {"sightings", "--poles", at(rawlog), "--output", at("a.csv")});
   };
-  const Outcome seen = sightings("a.rawlog");
-  EXPECT_EQ(seen.code, 0) << seen.err;
+  const Outcome seen = succeeded(sightings("a.rawlog"));
   const io::CsvTable table(folder / "a.csv");
   const std::size_t points = table.column("points");
   std::size_t detections = 0, found = 0;

@@ -17,20 +17,16 @@ TEST(LeftMap, BeyondTheMapPolesWithoutAMatchSayNothing) {
   feed.near = {10, 10, 10};
   feed.scans(60, 1);
   feed.near = {10, 3, 3.5};
-  feed.scans(40, 0.3);
-  feed.expect(State::degraded, Reason::noPoles);
+  feed.scans(40, 0.3).expect(State::degraded, Reason::noPoles);
   EXPECT_TRUE(feed.monitor.hasLeftMap());
   feed.near = {10, 0, 0};
-  feed.scans(100, 0);
-  feed.expect(State::degraded, Reason::noPoles);
+  feed.scans(100, 0).expect(State::degraded, Reason::noPoles);
   feed.sigma = 6;  // the odometry alone leads
-  feed.scans(2, 0);
-  feed.expect(State::lost, Reason::spread);
+  feed.scans(2, 0).expect(State::lost, Reason::spread);
   EXPECT_TRUE(feed.monitor.hasLeftMap()) << "it is still known which poles to expect";
   feed.sigma = 0.05;
   feed.near = {10, 8, 9};
-  feed.scans(60, 0.8);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(60, 0.8).expect(State::ok, Reason::none);
   EXPECT_FALSE(feed.monitor.hasLeftMap());
 }
 
@@ -40,15 +36,12 @@ TEST(LeftMap, WhereTheMapHasPolesThatAreNotSeenThePoseIsWrong) {
     feed.near = {10, 10, 10};
     feed.scans(60, 1);
     feed.near = near;
-    feed.scans(60, 0.1);
-    feed.expect(State::degraded, Reason::mismatch);
+    feed.scans(60, 0.1).expect(State::degraded, Reason::mismatch);
     EXPECT_FALSE(feed.monitor.hasLeftMap());
     feed.near = {10, 0, 4};
-    feed.scans(60, 0);
-    feed.expect(State::lost, Reason::mismatch);
+    feed.scans(60, 0).expect(State::lost, Reason::mismatch);
     feed.near = {10, 0, 0};  // a wrong pose drives on, off the map
-    feed.scans(60, 0);
-    feed.expect(State::lost, Reason::mismatch);
+    feed.scans(60, 0).expect(State::lost, Reason::mismatch);
     EXPECT_FALSE(feed.monitor.hasLeftMap());
   }
 }
@@ -56,8 +49,7 @@ TEST(LeftMap, WhereTheMapHasPolesThatAreNotSeenThePoseIsWrong) {
 TEST(LeftMap, APoseThatIsNotConfirmedYetHasNotLeftTheMap) {
   Feed feed;
   feed.near = {10, 0, 0};
-  feed.scans(60, 0);
-  feed.expect(State::lost, Reason::mismatch);
+  feed.scans(60, 0).expect(State::lost, Reason::mismatch);
   EXPECT_FALSE(feed.monitor.hasLeftMap());
 }
 

@@ -25,7 +25,6 @@ const char* const kCameraPoses =
 class KittiOdometryTest : public FolderTest {
  protected:
   void SetUp() override {
-    FolderTest::SetUp();
     for (const char* name : {"000000", "000001", "000002"}) {
       write("sequences/07/velodyne/" + std::string(name) + ".bin", floats({1, 2, 3, 0.5f}));
     }

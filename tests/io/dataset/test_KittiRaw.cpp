@@ -43,7 +43,6 @@ std::string stamp(double seconds) {
 class KittiRawTest : public FolderTest {
  protected:
   void SetUp() override {
-    FolderTest::SetUp();
     std::string times;
     for (int i = 0; i < 5; ++i) {
       addScan(i);

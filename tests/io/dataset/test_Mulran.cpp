@@ -29,7 +29,6 @@ std::string drive(int rows) {
 class MulranTest : public FolderTest {
  protected:
   void SetUp() override {
-    FolderTest::SetUp();
     for (const char* name : kNames)
       write("KAIST01/Ouster/" + std::string(name) + ".bin", floats({1, 2, 3, 100}));
     write("KAIST01/global_pose.csv", drive(40));

@@ -22,7 +22,6 @@ std::uint64_t scanTime(int i) {
 class NcltTest : public FolderTest {
  protected:
   void SetUp() override {
-    FolderTest::SetUp();
     for (int i = 0; i < 5; ++i)
       write("2012-01-15/velodyne_sync/" + std::to_string(scanTime(i)) + ".bin", point(1, 2, 3));
     std::string truth = std::to_string(start - 20000) + ",nan,nan,nan,nan,nan,nan\n", track, steps,

@@ -34,7 +34,6 @@ std::string odometryAt(TestOdometry odometry) {
 class Rosbag2Test : public FolderTest {
  protected:
   void SetUp() override {
-    FolderTest::SetUp();
     bag.emplace(path("a.db3"));
     clouds = bag->topic("/points", pointCloud2);
     odometry = bag->topic("/odom", odometry2);

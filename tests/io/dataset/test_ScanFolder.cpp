@@ -22,7 +22,6 @@ std::string leftAt(const std::string& x, const std::string& y, const std::string
 class ScanFolderTest : public FolderTest {
  protected:
   void SetUp() override {
-    FolderTest::SetUp();
     for (const char* name : {"000000", "000001", "000002"}) addScan(name);
     write("times.txt", "# s\n0.0\n0.1\n0.25\n");
   }

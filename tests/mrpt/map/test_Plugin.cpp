@@ -30,7 +30,7 @@ constexpr int scans = 20;
 
 /// A street of poles with a drive along its middle, one scan per metre.
 struct Street {
-  samples::Folder folder{"Plugin"};
+  testing_apps::TempFolder folder;
   Street() {
     std::vector<MapPole> poles;
     for (int i = 0; i < 8; ++i) poles.push_back(tests::mapPoleAt(5 * i, i % 2 ? 4 : -4));

@@ -32,7 +32,7 @@ void writeKitti(const std::string& path, const TestCloud& cloud) {
 
 TEST(ObservationPoints, ReadsExternalKittiFiles) {
   using Format = CObservationPointCloud::ExternalStorageFormat;
-  const Folder folder("ObservationPoleExtractor");
+  const testing_apps::TempFolder folder;
   const auto options = hdl32(1.5);
   TestCloud cloud = plainCloud(options);
   const auto expected = corePoles(options, cloud.view());
@@ -57,7 +57,7 @@ TEST(ObservationPoints, ReadsExternalKittiFiles) {
 
 TEST(ObservationPoints, LoadsAndUnloadsOtherExternalFiles) {
   using Format = CObservationPointCloud::ExternalStorageFormat;
-  const Folder folder("PoleExtractionGz");
+  const testing_apps::TempFolder folder;
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
   {

@@ -36,7 +36,7 @@ CActionCollection move(CActionRobotMovement2D::TEstimationMethod method) {
 }
 
 TEST(RawlogWriter, TheCommentIsThatOfMrpt) {
-  const samples::Folder folder("RawlogComment");
+  const testing_apps::TempFolder folder;
   RawlogWriter writer(folder / "s.rawlog");
   writer.writeComment("said", 12.5);
   writer.write(samples::observation());
@@ -58,7 +58,7 @@ TEST(RawlogWriter, TheCommentIsThatOfMrpt) {
 }
 
 TEST(RawlogWriter, PairsAndObservationsSurvive) {
-  const samples::Folder folder("RawlogWriter");
+  const testing_apps::TempFolder folder;
   RawlogWriter writer(folder / "s.rawlog");
   writer.write(move(CActionRobotMovement2D::emScan2DMatching),
                std::make_shared<CObservationPoles>(samples::observation()));
@@ -91,7 +91,7 @@ TEST(RawlogWriter, PairsAndObservationsSurvive) {
 
 // The pitfall: a motion written as emOdometry is read back with another mean and covariance.
 TEST(RawlogWriter, RefusesMovementsThatWouldBeLost) {
-  const samples::Folder folder("RawlogWriterLost");
+  const testing_apps::TempFolder folder;
   CActionCollection odometry = move(CActionRobotMovement2D::emOdometry);
   const auto read =
       std::dynamic_pointer_cast<CActionCollection>(samples::objectFrom(samples::bytesOf(odometry)));
@@ -103,13 +103,13 @@ TEST(RawlogWriter, RefusesMovementsThatWouldBeLost) {
 }
 
 TEST(RawlogWriter, LeavesNothingUnlessCommitted) {
-  const samples::Folder folder("RawlogWriterNothing");
+  const testing_apps::TempFolder folder;
   { RawlogWriter(folder / "s.rawlog").write(samples::observation()); }
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
 }
 
 TEST(RawlogWriter, SameBytesEachTime) {
-  const samples::Folder folder("RawlogWriterBytes");
+  const testing_apps::TempFolder folder;
   std::string first;
   for (const char* name : {"a", "b"}) {
     RawlogWriter writer(folder / name);
@@ -129,7 +129,7 @@ TEST(RawlogWriter, RefusesAFolderThatIsNotThere) {
 
 // A limit on file sizes simulates a full disk: writes fail in the middle of the file.
 TEST(RawlogWriter, ReportsAFullDisk) {
-  const samples::Folder folder("RawlogWriterFull");
+  const testing_apps::TempFolder folder;
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);

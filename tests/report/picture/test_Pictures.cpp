@@ -44,7 +44,7 @@ class Pictures : public ::testing::Test {
     drawMapPng(view, file);
     return Pixels(file);
   }
-  TestFolder folder;
+  testing_apps::TempFolder folder;
   std::filesystem::path file = folder / "a.png";
 };
 

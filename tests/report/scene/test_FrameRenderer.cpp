@@ -34,7 +34,7 @@ bool isPurple(int r, int g, int b) {
 }  // namespace
 
 TEST(FrameRenderer, WritesAPictureOfTheSizeWithEverythingInItsColour) {
-  const TestFolder folder;
+  const testing_apps::TempFolder folder;
   FrameRenderer renderer(640, 360);
   LiveScene scene(smallMap(), "drive", FrameRenderer::textScale(360));
   LiveMoment moment = knownMoment();  // ahead, to the right and to the left
@@ -59,7 +59,7 @@ TEST(FrameRenderer, RefusesAFileThatCannotBeWritten) {
   FrameRenderer renderer(160, 160);
   LiveScene scene(smallMap(), "", FrameRenderer::textScale(160));
   scene.show(searchingMoment());
-  EXPECT_THROW(renderer.render(*scene.scene(), TestFolder() / "no/a.png"), Error);
+  EXPECT_THROW(renderer.render(*scene.scene(), testing_apps::TempFolder() / "no/a.png"), Error);
 }
 
 }  // namespace polemcl::report::test_frame_renderer

@@ -242,7 +242,7 @@ TEST(LiveScene, MapsInUtmKeepTheirCentimetres) {
 }
 
 TEST(LiveScene, TheFileHoldsStockObjectsAndComesBack) {
-  const TestFolder folder;
+  const testing_apps::TempFolder folder;
   LiveScene scene(smallMap(), "drive");
   scene.show(knownMoment());
   polemcl::scene::save(*scene.scene(), folder / "a.3Dscene");

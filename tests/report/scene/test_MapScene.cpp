@@ -22,7 +22,7 @@ MapView movedBy(MapView view, double x, double y) {
 }
 
 mrpt::opengl::COpenGLScene::Ptr writtenAndRead(const mrpt::opengl::COpenGLScene& scene) {
-  const TestFolder folder;
+  const testing_apps::TempFolder folder;
   scene::save(scene, folder / "a.3Dscene");
   auto loaded = mrpt::opengl::COpenGLScene::Create();
   EXPECT_TRUE(loaded->loadFromFile((folder / "a.3Dscene").string()));
@@ -160,7 +160,7 @@ TEST(MapScene, WhatIsMissingIsLeftOut) {
 }
 
 TEST(MapScene, TheFileHoldsStockObjectsAndComesBack) {
-  const TestFolder folder;
+  const testing_apps::TempFolder folder;
   const auto file = folder / "a.3Dscene";
   scene::save(*makeMapScene(smallDrive()), file);
   std::ifstream in(file, std::ios::binary);
@@ -179,7 +179,7 @@ TEST(MapScene, RefusesNothingToShowAndValuesThatAreNotFinite) {
 
 TEST(MapScene, RefusesToWriteIntoAMissingFolder) {
   const auto scene = makeMapScene(smallDrive());
-  EXPECT_THROW(scene::save(*scene, TestFolder() / "no/a.3Dscene"), Error);
+  EXPECT_THROW(scene::save(*scene, testing_apps::TempFolder() / "no/a.3Dscene"), Error);
 }
 
 TEST(DiffScene, EachKindInItsGroup) {
