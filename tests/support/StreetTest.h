@@ -45,11 +45,10 @@ class StreetTest : public testing::Test {
   }
   /// The same without true poses: `street.polemap`, and its poses in `found.tum`.
   Outcome buildWithoutTruth(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments{
-        "build",    "--config",           config(),       "--input",      at("in.rawlog"),
-        "--output", at("street.polemap"), "--trajectory", at("found.tum")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(polemcl::apps::mapMain, arguments);
+    return runProgram(polemcl::apps::mapMain,
+                      {"build", "--config", config(), "--input", at("in.rawlog"), "--output",
+                       at("street.polemap"), "--trajectory", at("found.tum")},
+                      more);
   }
   /// Writes `fixes.csv`, a fix just after each true pose. The truth begins at (100, 50) of a map
   /// with the datum 48,9. \param along What the receiver says of the x of the truth.

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "support/ExpectHas.h"
+
 namespace testing_apps {
 
 namespace fs = std::filesystem;
@@ -67,7 +69,9 @@ struct Outcome {
 
 /// Runs a program in this process.
 inline Outcome runProgram(const std::function<int(int, const char* const*)>& program,
-                          const std::vector<std::string>& arguments) {
+                          std::vector<std::string> arguments,
+                          const std::vector<std::string>& more = {}) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
   std::vector<const char*> argv{"program"};
   for (const auto& argument : arguments) argv.push_back(argument.c_str());
   Outcome outcome;
@@ -89,13 +93,12 @@ inline Outcome succeeded(const Outcome& outcome) {
 inline void expectFailure(const Outcome& outcome, const std::vector<std::string>& words) {
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  for (const auto& word : words)
-    EXPECT_NE(outcome.err.find(word), std::string::npos) << word << " is not in: " << outcome.err;
+  for (const auto& word : words) EXPECT_HAS(outcome.err, word) << ", without " << word;
 }
 
 inline void expectUsageError(const Outcome& outcome) {
   EXPECT_EQ(outcome.code, 2) << outcome.err;
-  EXPECT_NE(outcome.err.find("--help"), std::string::npos) << outcome.err;
+  EXPECT_HAS(outcome.err, "--help");
 }
 
 }  // namespace testing_apps

@@ -42,17 +42,10 @@ class Trials : public testing::Test {
     return result;
   }
   Outcome run(const std::string& command, const Arguments& more = {}) const {
-    Arguments all{command,
-                  "--config",
-                  city.at("city.ini"),
-                  "--map",
-                  city.at("city.polemap"),
-                  "--input",
-                  city.at("drive.rawlog"),
-                  "--truth",
-                  city.at("drive.tum")};
-    all.insert(all.end(), more.begin(), more.end());
-    return runProgram(evalMain, all);
+    return runProgram(evalMain,
+                      {command, "--config", city.at("city.ini"), "--map", city.at("city.polemap"),
+                       "--input", city.at("drive.rawlog"), "--truth", city.at("drive.tum")},
+                      more);
   }
   /// What the command writes, the same on one thread as on all; `words` are in its text.
   nlohmann::json figures(const std::string& command, Arguments more, const std::string& words) {

@@ -185,8 +185,7 @@ TEST_F(BatchApp, FailedSessionsAreReportedAndStopNoOthers) {
   const std::string message = messageOf([&] { doBatch(options); });
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(message.find("4 of 14 tasks failed (run.kept.s2.00: "), std::string::npos) << message;
-  EXPECT_NE(message.find("with the tasks that need them, 4 are not done"), std::string::npos)
-      << message;
+  EXPECT_HAS(message, "with the tasks that need them, 4 are not done");
   EXPECT_NE(said.find("run.once.s2.00 failed: "), std::string::npos) << said;
   const auto results = resultsIn(*s_folder / "broken");
   EXPECT_EQ(results["failures"].size(), 4u);
@@ -316,10 +315,8 @@ TEST_F(BatchApp, RefusesWrongUsage) {
 TEST_F(BatchApp, PrintsItsPlan) {
   const Outcome outcome =
       succeeded(runProgram(batchMain, {(*s_folder / "street-batch.ini").string(), "--dry-run"}));
-  EXPECT_NE(outcome.out.find("run.once.s2.01\n  after poles.s2\n  after map.once.s0\n  $ "
-                             "pole-localize"),
-            std::string::npos)
-      << outcome.out;
+  EXPECT_HAS(outcome.out,
+             "run.once.s2.01\n  after poles.s2\n  after map.once.s0\n  $ pole-localize");
 }
 
 TEST_F(BatchApp, AnInstalledBatchIsDoneByItsName) {

@@ -5,7 +5,6 @@
 
 #include "batch/BatchSlurm.h"
 #include "support/BatchTestFiles.h"
-#include "support/ExpectHas.h"
 
 namespace polemcl::test_batch_slurm {
 

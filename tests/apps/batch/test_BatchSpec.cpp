@@ -2,7 +2,6 @@
 
 #include "batch/BatchSpec.h"
 #include "support/BatchTestFiles.h"
-#include "support/ExpectHas.h"
 
 namespace polemcl::test_batch_spec {
 

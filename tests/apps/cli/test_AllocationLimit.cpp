@@ -6,7 +6,6 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
-#include "support/ExpectHas.h"
 #include "support/Samples.h"
 #include "support/Shell.h"
 

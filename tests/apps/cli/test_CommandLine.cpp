@@ -9,7 +9,6 @@
 #include <polemcl/core/common/Types.h>
 #include "cli/CommandLine.h"
 #include "cli/Version.h"
-#include "support/ExpectHas.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_command_line {

@@ -21,7 +21,6 @@
 #include "localize/LocalizeApp.h"
 #include "map/MapApp.h"
 #include "simulate/SimulateApp.h"
-#include "support/ExpectHas.h"
 #include "support/Shell.h"
 
 namespace polemcl::test_help_texts {

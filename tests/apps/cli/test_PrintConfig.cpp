@@ -7,7 +7,6 @@
 #include "cli/CommandLine.h"
 #include "cli/Settings.h"
 #include "core/common/Binder.h"
-#include "support/ExpectHas.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_print_config {

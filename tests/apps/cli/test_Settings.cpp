@@ -1,6 +1,5 @@
 #include <polemcl/core/common/Types.h>
 #include "cli/Settings.h"
-#include "support/ExpectHas.h"
 #include "support/Refusal.h"
 #include "support/TempFolder.h"
 

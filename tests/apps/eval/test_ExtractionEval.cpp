@@ -79,9 +79,7 @@ TEST_F(ExtractionEval, DetectionsAreScoredAgainstTheLabels) {
   for (const auto& [key, value] : expected) EXPECT_NEAR(score[key], value, 1e-9) << key;
   EXPECT_EQ(readText(at("v.csv")), "id,x,y,radius,top,scans\n1,5.0000,10.0000,0.1000,4.0000,2\n");
   const std::string text = run(command).out;
-  EXPECT_NE(text.find("\nprecision 0.6667  recall 1.0000\ncentre error: median 2.5  mean 2.5  "),
-            std::string::npos)
-      << text;
+  EXPECT_HAS(text, "\nprecision 0.6667  recall 1.0000\ncentre error: median 2.5  mean 2.5  ");
 }
 
 TEST_F(ExtractionEval, ThePolesOfTheMapAreSeenFromWhateverFrameTheCloudHas) {

@@ -49,10 +49,9 @@ std::vector<CsvPole> readCsv(const fs::path& file) {
 class ExtractApp : public StreetTest {
  protected:
   Outcome run(std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments{"--config",      config(),   "--input",
-                                       at("in.rawlog"), "--output", at("poles.rawlog")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(extractMain, arguments);
+    return runProgram(
+        extractMain,
+        {"--config", config(), "--input", at("in.rawlog"), "--output", at("poles.rawlog")}, more);
   }
 };
 

@@ -10,7 +10,6 @@
 #include "io/data/Trajectory.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/DiskCalls.h"
-#include "support/ExpectHas.h"
 #include "support/Refusal.h"
 #include "support/ScanFolders.h"
 

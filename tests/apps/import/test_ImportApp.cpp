@@ -7,7 +7,6 @@
 
 #include "import/ImportApp.h"
 #include "mrpt/rawlog/RawlogReader.h"
-#include "support/ExpectHas.h"
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_import_app {

@@ -10,7 +10,6 @@
 #include "io/data/Trajectory.h"
 #include "mrpt/rawlog/GnssFixes.h"
 #include "mrpt/rawlog/RawlogReader.h"
-#include "support/ExpectHas.h"
 #include "support/RosBags.h"
 #include "support/ScanFolders.h"
 

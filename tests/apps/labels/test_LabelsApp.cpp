@@ -30,9 +30,7 @@ class LabelsApp : public testing::Test {
   std::string at(const std::string& name) const { return (folder / name).string(); }
   Outcome run(const std::string& output = "truth.polemap",
               const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"--input", at("00"), "--output", at(output)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(labelsMain, arguments);
+    return runProgram(labelsMain, {"--input", at("00"), "--output", at(output)}, more);
   }
   /// Scans a metre apart along x, at y = 0; KITTI's camera looks along x and has z ahead.
   void writeSequence(std::size_t scans) {
@@ -69,8 +67,7 @@ class LabelsApp : public testing::Test {
 TEST_F(LabelsApp, MapsTheLabelsOfASequence) {
   writeSequence(5);
   const Outcome outcome = succeeded(run());
-  EXPECT_NE(outcome.out.find("2 poles from 350 points in 5 scans"), std::string::npos)
-      << outcome.out;
+  EXPECT_HAS(outcome.out, "2 poles from 350 points in 5 scans");
   const auto map = io::readPoleMap(folder / "truth.polemap");
   ASSERT_EQ(map.poles.size(), 2u);
   EXPECT_NEAR(map.poles[0].x, 6, 1e-3);  // the LiDAR's frame of scan 0

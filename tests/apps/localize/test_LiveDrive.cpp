@@ -17,7 +17,6 @@
 #include "io/data/Trajectory.h"
 #include "localize/EndSignals.h"
 #include "localize/LocalizeApp.h"
-#include "support/ExpectHas.h"
 #include "support/UdpSender.h"
 #include "support/VelodynePackets.h"
 

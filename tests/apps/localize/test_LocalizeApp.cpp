@@ -6,7 +6,6 @@
 #include "io/map/Datum.h"
 #include "mrpt/rawlog/GnssFixes.h"
 #include "support/CityFiles.h"
-#include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
 #include "support/Samples.h"
 

@@ -8,7 +8,6 @@
 #include <polemcl/localizer/MapBuilder.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "localizer/ScanOdometry.h"
-#include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
 #include "support/Refusal.h"
 #include "support/Samples.h"

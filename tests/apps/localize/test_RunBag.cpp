@@ -109,8 +109,7 @@ TEST_F(RunBag, HasTheSameBytesAndChangesNoResult) {
 
 TEST_F(RunBag, RefusesOtherNamesAndInputs) {
   EXPECT_EQ(runWithTruth({"--mcap", (folder / "run.bag").string()}).code, 2);
-  EXPECT_NE(runWithTruth({"--mcap", (folder / "run.bag").string()}).err.find("must end in .mcap"),
-            std::string::npos);
+  EXPECT_HAS(runWithTruth({"--mcap", (folder / "run.bag").string()}).err, "must end in .mcap");
   expectFailure(runWithTruth({"--mcap", (folder / "none" / "run.mcap").string()}), {"run.mcap"});
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "cli/SensorCounts.h"
-#include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
 
 namespace testing_apps {

@@ -6,7 +6,6 @@
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
-#include "support/ExpectHas.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_drive_doubts {

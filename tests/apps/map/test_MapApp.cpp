@@ -9,7 +9,6 @@
 #include "map/MapApp.h"
 #include "map/MapBuildReport.h"
 #include "mrpt/rawlog/GnssFixes.h"
-#include "support/ExpectHas.h"
 #include "support/IoFiles.h"
 #include "support/Samples.h"
 #include "support/StreetTest.h"
@@ -64,9 +63,7 @@ TEST_F(MapApp, MapsTheStreet) {
   EXPECT_EQ(map.info.at("scans"), "12");
   EXPECT_EQ(map.info.at("inputs"), "in.rawlog");
   EXPECT_NE(map.info.at("config").find("section_length_m"), std::string::npos);
-  EXPECT_NE(outcome.out.find(std::to_string(map.poles.size()) + " poles from 12 scans over 11.0 m"),
-            std::string::npos)
-      << outcome.out;
+  EXPECT_HAS(outcome.out, std::to_string(map.poles.size()) + " poles from 12 scans over 11.0 m");
   EXPECT_EQ(io::readPolePositions(folder / "street.csv").size(), map.poles.size());
   EXPECT_EQ(readText(folder / "street.csv").rfind("x,y,radius,count,", 0), 0u);
   EXPECT_GT(fs::file_size(folder / "street.3Dscene"), 1000u);
@@ -216,11 +213,10 @@ TEST_F(MapApp, WithoutTruthOdometryOrPolesTellTheWay) {
   fs::remove(folder / "in" / "odometry.txt");
   import("in");
   const auto build = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"build",        "--config",           config(),
-                                       "--output",     at("street.polemap"), "--input",
-                                       at("in.rawlog")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
+    return runProgram(mapMain,
+                      {"build", "--config", config(), "--output", at("street.polemap"), "--input",
+                       at("in.rawlog")},
+                      more);
   };
   const Outcome outcome = succeeded(build({}));
   EXPECT_EQ(outcome.out.find("poses by odometry"), std::string::npos);
@@ -321,8 +317,7 @@ TEST_F(MapApp, AgreesWithATrueDrive) {
   drive("in", 12);
   const auto outcome = run({"in"});
   EXPECT_EQ(outcome.err, "");
-  EXPECT_NE(outcome.out.find("in.rawlog: the poles agree with these poses"), std::string::npos)
-      << outcome.out;
+  EXPECT_HAS(outcome.out, "in.rawlog: the poles agree with these poses");
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.count("warnings"), 0u);
 }
 
@@ -371,9 +366,7 @@ TEST_F(MapApp, NotesTwinPoles) {
   io::writeTum(folder / "in.tum", truth);
   const Outcome outcome = succeeded(run({"in"}, {"--set", "map.min_count=1"}));
   EXPECT_NE(outcome.out.find("the poles agree"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.err.find("poles have a twin nearer than 1 m (the scans are 0."),
-            std::string::npos)
-      << outcome.err;
+  EXPECT_HAS(outcome.err, "poles have a twin nearer than 1 m (the scans are 0.");
 }
 
 TEST_F(MapApp, NamesTheCountWhenNoPoleIsSeenOftenEnough) {
@@ -430,8 +423,7 @@ TEST_F(MapApp, WrongUsage) {
   for (const std::vector<std::string>& none : {std::vector<std::string>(), {"--config", "c"}}) {
     const Outcome outcome = runProgram(mapMain, none);
     expectUsageError(outcome);
-    EXPECT_NE(outcome.err.find("needed: build, update, diff, convert"), std::string::npos)
-        << outcome.err;
+    EXPECT_HAS(outcome.err, "needed: build, update, diff, convert");
   }
   expectUsageError(runProgram(mapMain, {"build", "--config", "c", "--input", "a", "b", "--truth",
                                         "a", "--output", "m.polemap"}));

@@ -36,10 +36,8 @@ class MapConvertApp : public testing::Test {
   }
   Outcome convert(const std::string& from, const std::string& to,
                   const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"convert", (folder / from).string(), "--output",
-                                       (folder / to).string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
+    return runProgram(
+        mapMain, {"convert", (folder / from).string(), "--output", (folder / to).string()}, more);
   }
   TempFolder folder;
   AddedSessions scans;
@@ -99,9 +97,7 @@ TEST_F(MapConvertApp, GivesAMapItsDatumAndKeepsTheRest) {
 
 TEST_F(MapConvertApp, TellsWhatIsLeftOut) {
   const auto outcome = convert("m.polemap", "m.csv");
-  EXPECT_NE(outcome.out.find("candidates, which are not on the map, left out: 1"),
-            std::string::npos)
-      << outcome.out;
+  EXPECT_HAS(outcome.out, "candidates, which are not on the map, left out: 1");
   EXPECT_EQ(convert("m.polemap", "m.csv", {"--quiet"}).out, "");
 }
 

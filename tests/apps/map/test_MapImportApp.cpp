@@ -6,7 +6,6 @@
 #include "io/map/PoleMapFile.h"
 #include "map/GeoJson.h"
 #include "map/MapApp.h"
-#include "support/ExpectHas.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_map_import_app {
@@ -22,10 +21,10 @@ class MapImportApp : public testing::Test {
   Outcome import(const std::string& name, const std::string& text,
                  const std::vector<std::string>& more = {}) {
     std::ofstream(folder / name) << text;
-    std::vector<std::string> arguments{"import", "--input", (folder / name).string(), "--output",
-                                       (folder / "m.polemap").string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
+    return runProgram(mapMain,
+                      {"import", "--input", (folder / name).string(), "--output",
+                       (folder / "m.polemap").string()},
+                      more);
   }
   /// Error of a run that must fail and write nothing.
   std::string failure(const std::string& name, const std::string& text,

@@ -42,19 +42,18 @@ class MapUpdateApp : public StreetTest {
                                        "--output", at("day0.polemap"), "--csv", at("m.csv")}));
   }
   Outcome update(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"update",           "--config", config(),          "--map",
-                                       at("day0.polemap"), "--input",  at("day1.rawlog"), "--truth",
-                                       at("day1.tum"),     "--output", at("day1.polemap")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
+    return runProgram(
+        mapMain,
+        {"update", "--config", config(), "--map", at("day0.polemap"), "--input", at("day1.rawlog"),
+         "--truth", at("day1.tum"), "--output", at("day1.polemap")},
+        more);
   }
   Outcome updateByRun(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"update",          "--config",         config(),
-                                       "--map",           at("day0.polemap"), "--input",
-                                       at("day1.rawlog"), "--estimate",       at("run_00.tum"),
-                                       "--output",        at("day1.polemap")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
+    return runProgram(
+        mapMain,
+        {"update", "--config", config(), "--map", at("day0.polemap"), "--input", at("day1.rawlog"),
+         "--estimate", at("run_00.tum"), "--output", at("day1.polemap")},
+        more);
   }
   /// Files of a run of pole-localize over day1 that estimated the true poses.
   /// \param state From scan `doubtful` on; `lost` before. \param shift Added to all times, s.

@@ -19,9 +19,7 @@ class SimulateApp : public testing::Test {
               "[sensor]\nmodel = " + model + "\n[simulation]\nscans = 3\n[world]\nlength_m = 40\n");
   }
   Outcome run(std::vector<std::string> extra = {}) {
-    std::vector<std::string> arguments{"--config", at("street.ini"), "--output", at("drive")};
-    arguments.insert(arguments.end(), extra.begin(), extra.end());
-    return runProgram(simulateMain, arguments);
+    return runProgram(simulateMain, {"--config", at("street.ini"), "--output", at("drive")}, extra);
   }
   std::string at(const std::string& name) { return (folder / name).string(); }
   TempFolder folder;

@@ -28,9 +28,7 @@ class SimulatedPoles : public testing::Test {
                   simulation + "[world]\n" + world);
   }
   Outcome run(const std::string& rawlog, std::vector<std::string> extra = {}) {
-    std::vector<std::string> arguments{"--config", at("street.ini"), "--poles", at(rawlog)};
-    arguments.insert(arguments.end(), extra.begin(), extra.end());
-    return runProgram(simulateMain, arguments);
+    return runProgram(simulateMain, {"--config", at("street.ini"), "--poles", at(rawlog)}, extra);
   }
   std::string at(const std::string& name) { return (folder / name).string(); }
   PoleSequence read(const std::string& name) { return readPoleSequence(at(name), {}); }

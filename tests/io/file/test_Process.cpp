@@ -36,8 +36,7 @@ TEST(Process, AFailureIsToldByItsLastLine) {
 }
 
 TEST(Process, AScriptThatIsNotInstalledIsNamed) {
-  EXPECT_NE(tests::messageOf([] { pythonScript("none.py"); }).find("report/none.py"),
-            std::string::npos);
+  EXPECT_HAS(tests::messageOf([] { pythonScript("none.py"); }), "report/none.py");
 }
 
 }  // namespace polemcl::io::test_process

@@ -101,8 +101,7 @@ TEST(PlayerPanels, ShowHealthErrorsAndTimes) {
   EXPECT_EQ(facesOf(live.scene(), scene::truthColor), 2 * 10);  // the marks of 0, 5, ... 45 s
 
   showTimeLine(*live.scene(), makeTimeLine(playback, std::vector<float>(50, 0.3f), 0), "");
-  EXPECT_NE(textOf(live.scene(), "player").find("error of the position; line: 0.3 m"),
-            std::string::npos);
+  EXPECT_HAS(textOf(live.scene(), "player"), "error of the position; line: 0.3 m");
   EXPECT_EQ(facesOf(live.scene(), scene::truthColor), 2 * (10 + 500));  // and the curve
 }
 
