@@ -2,7 +2,6 @@
 /// \file BatchTestFiles.h
 /// \brief Batches for tests: files of simulated sessions, plans of made-up tasks.
 
-#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 

@@ -7,8 +7,6 @@
 #include <zstd.h>
 
 #include <cstdint>
-#include <map>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>

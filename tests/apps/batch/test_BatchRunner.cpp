@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <set>
 
 #include "batch/BatchRunner.h"
 #include "support/BatchTestFiles.h"

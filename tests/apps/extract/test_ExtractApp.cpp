@@ -1,6 +1,5 @@
 #include <mrpt/obs/CActionRobotMovement2D.h>
 
-#include <limits>
 #include <map>
 
 #include <polemcl/core/common/Types.h>

@@ -3,8 +3,6 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
-#include <optional>
-
 #include "config/TimingComment.h"
 #include "import/ImportApp.h"
 #include "io/data/Trajectory.h"

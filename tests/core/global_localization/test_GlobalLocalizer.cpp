@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <string>
 
 #include "core/global_localization/GlobalLocalizer.h"
 #include "support/PoleCity.h"

@@ -6,7 +6,6 @@
 #include <zlib.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/common/Binder.h"
 #include "core/localization/LocalMaps.h"
 #include "support/Poles.h"

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <optional>
-#include <string>
 
 #include "core/localization/LocalSubmap.h"
 #include "support/PoleCity.h"

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/localization/ScanRegistration.h"
 #include "sim/common/Random.h"
 #include "support/Poles.h"

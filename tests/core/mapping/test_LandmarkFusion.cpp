@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <cmath>
 #include <numeric>
 #include <random>
 

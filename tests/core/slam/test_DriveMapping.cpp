@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
 

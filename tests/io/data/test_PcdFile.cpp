@@ -1,6 +1,5 @@
 #include <liblzf/lzf.h>
 
-#include <cmath>
 #include <vector>
 
 #include "io/data/PcdFile.h"

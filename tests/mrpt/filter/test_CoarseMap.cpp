@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleStreet.h"
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "mrpt/filter/PoleParticleFilter.h"
 #include "support/FilterSamples.h"

@@ -4,7 +4,6 @@
 #include <mrpt/slam/CMonteCarloLocalization2D.h>
 
 #include <cmath>
-#include <set>
 #include <thread>
 
 #include "mrpt/filter/PoleParticleFilter.h"

@@ -5,9 +5,6 @@
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
-#include <algorithm>
-#include <cstring>
-
 #include <polemcl/core/common/Types.h>
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/LiveSensorsTest.h"

@@ -12,7 +12,6 @@
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <zlib.h>
 
-#include <cstring>
 #include <fstream>
 
 #include <polemcl/mrpt/map/CPoleMap.h>

@@ -3,7 +3,6 @@
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
-#include <cmath>
 #include <cstring>
 
 #include "core/common/Binder.h"

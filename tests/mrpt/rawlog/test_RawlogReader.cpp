@@ -12,7 +12,6 @@
 #include <zlib.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <fstream>
 #include <new>
 #include <set>

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/extraction/range_image/PoleCandidates.h"
 #include "support/Clouds.h"
 
