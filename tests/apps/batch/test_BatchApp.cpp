@@ -14,7 +14,6 @@
 
 namespace polemcl::test_batch_app {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

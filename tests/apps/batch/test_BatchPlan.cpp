@@ -7,7 +7,6 @@
 
 namespace polemcl::test_batch_plan {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

@@ -8,7 +8,6 @@
 
 namespace polemcl::test_batch_slurm {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

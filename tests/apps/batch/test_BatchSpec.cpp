@@ -5,7 +5,6 @@
 
 namespace polemcl::test_batch_spec {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

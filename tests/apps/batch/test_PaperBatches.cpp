@@ -6,7 +6,6 @@
 
 namespace polemcl::test_paper_batches {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

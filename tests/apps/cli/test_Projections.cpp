@@ -9,7 +9,6 @@
 
 namespace polemcl::test_projections {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using testing_apps::messageOf;
 

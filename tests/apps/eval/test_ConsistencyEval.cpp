@@ -2,7 +2,6 @@
 
 namespace polemcl::test_consistency_eval {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

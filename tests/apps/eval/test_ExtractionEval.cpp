@@ -3,7 +3,6 @@
 
 namespace polemcl::test_extraction_eval {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

@@ -12,7 +12,6 @@
 
 namespace polemcl::test_labelled_features {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

@@ -16,7 +16,6 @@
 
 namespace polemcl::test_inspect_app {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

@@ -19,7 +19,6 @@
 
 namespace polemcl::test_import_owners {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 using namespace testing_nclt;

@@ -13,7 +13,6 @@
 
 namespace polemcl::test_labels_app {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

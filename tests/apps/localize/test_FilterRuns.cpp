@@ -7,7 +7,6 @@
 
 namespace polemcl::test_filter_runs {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 
 namespace {

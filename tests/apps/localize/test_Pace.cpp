@@ -6,7 +6,6 @@
 
 namespace polemcl::test_pace {
 
-using namespace polemcl;
 using polemcl::apps::Pace;
 
 namespace {

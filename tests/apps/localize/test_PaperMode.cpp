@@ -15,7 +15,6 @@
 
 namespace polemcl::test_paper_mode {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

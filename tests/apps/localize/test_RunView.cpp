@@ -11,7 +11,6 @@
 
 namespace polemcl::test_run_view {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

@@ -15,7 +15,6 @@
 
 namespace polemcl::test_map_app {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

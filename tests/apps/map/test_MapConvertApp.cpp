@@ -9,7 +9,6 @@
 
 namespace polemcl::test_map_convert_app {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

@@ -4,13 +4,11 @@
 #include <fstream>
 
 #include "io/map/PoleMapFile.h"
-#include "map/GeoJson.h"
 #include "map/MapApp.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_map_import_app {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

@@ -10,7 +10,6 @@
 
 namespace polemcl::test_map_sessions {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

@@ -7,12 +7,10 @@
 #include "io/data/Trajectory.h"
 #include "io/map/PoleMapFile.h"
 #include "map/MapApp.h"
-#include "map/MapUpdateApp.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_update_app {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

@@ -9,7 +9,6 @@
 
 namespace polemcl::test_timing_doubt {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 
 namespace {

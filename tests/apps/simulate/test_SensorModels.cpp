@@ -11,7 +11,6 @@
 
 namespace polemcl::test_sensor_models {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

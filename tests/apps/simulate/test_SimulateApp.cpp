@@ -6,7 +6,6 @@
 
 namespace polemcl::test_simulate_app {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

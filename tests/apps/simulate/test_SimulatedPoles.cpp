@@ -5,7 +5,6 @@
 #include "import/DatasetImport.h"
 #include "io/data/Trajectory.h"
 #include "io/file/CsvTable.h"
-#include "io/map/PoleTables.h"
 #include "mrpt/rawlog/PoleSequence.h"
 #include "simulate/SimulateApp.h"
 #include "support/DiskCalls.h"
@@ -13,7 +12,6 @@
 
 namespace polemcl::test_simulated_poles {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 

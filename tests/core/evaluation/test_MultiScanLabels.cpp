@@ -6,8 +6,6 @@
 
 namespace polemcl::test_multi_scan_labels {
 
-using namespace polemcl;
-
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;

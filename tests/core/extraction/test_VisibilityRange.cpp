@@ -5,7 +5,6 @@
 
 #include <polemcl/core/extraction/PoleExtractor.h>
 #include "core/extraction/VisibilityRange.h"
-#include "core/sensor/PinholeCamera.h"
 #include "support/KnownScene.h"
 
 namespace polemcl::test_visibility_range {

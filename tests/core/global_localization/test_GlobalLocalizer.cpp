@@ -9,7 +9,6 @@
 
 namespace polemcl::test_global_localizer {
 
-using namespace polemcl;
 using tests::CityOptions;
 using tests::DriveOptions;
 using tests::Frame;

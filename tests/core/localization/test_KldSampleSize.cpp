@@ -2,7 +2,6 @@
 
 #include <numeric>
 
-#include "core/common/Binder.h"
 #include "core/localization/KldSampleSize.h"
 
 namespace polemcl::test_kld_sample_size {

@@ -11,8 +11,6 @@
 
 namespace polemcl::test_local_submap {
 
-using namespace polemcl;
-
 namespace {
 
 PoleDetection seen(double x, double y, double variance = 0.01) {

@@ -10,8 +10,6 @@
 
 namespace polemcl::test_odometry_monitor {
 
-using namespace polemcl;
-
 namespace {
 
 /// A drive through a city at 10 Hz, `step` metres a scan, odometry off by 2 % of each component.

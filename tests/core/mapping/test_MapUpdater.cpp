@@ -15,7 +15,6 @@
 
 namespace polemcl::test_map_updater {
 
-using namespace polemcl;
 using tests::messageOf;
 
 namespace {

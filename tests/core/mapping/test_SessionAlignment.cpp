@@ -11,8 +11,6 @@
 
 namespace polemcl::test_session_alignment {
 
-using namespace polemcl;
-
 namespace {
 
 constexpr double s_length = 300;  // m of street

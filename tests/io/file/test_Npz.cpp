@@ -6,7 +6,6 @@
 
 namespace polemcl::test_npz {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 

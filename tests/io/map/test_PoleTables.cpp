@@ -4,7 +4,6 @@
 
 namespace polemcl::test_pole_tables {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 

@@ -1,4 +1,3 @@
-#include "io/file/Decompress.h"
 #include "io/rosbag/Bag.h"
 #include "support/IoFiles.h"
 #include "support/McapFiles.h"

@@ -5,8 +5,6 @@
 
 namespace polemcl::test_coarse_map {
 
-using namespace polemcl;
-
 namespace {
 
 /// The map of a street as an inventory states it: each pole off by `sigma` along each axis.

@@ -10,8 +10,6 @@
 
 namespace polemcl::test_localization_pipeline {
 
-using namespace polemcl;
-
 namespace {
 
 /// A city and drives through it in the form that the pipeline takes: one frame per metre.

@@ -14,8 +14,6 @@
 
 namespace polemcl::test_localization_pipeline_faults {
 
-using namespace polemcl;
-
 namespace {
 
 class PoleLocalizationFaults : public testing::Test {

@@ -6,7 +6,6 @@
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
 #include <polemcl/core/common/Types.h>
-#include "mrpt/rawlog/RawlogReader.h"
 #include "support/LiveSensorsTest.h"
 
 namespace polemcl::test_live_sensors {

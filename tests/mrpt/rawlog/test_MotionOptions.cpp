@@ -5,7 +5,6 @@
 
 #include <cstring>
 
-#include "core/common/Binder.h"
 #include "mrpt/rawlog/MotionOptions.h"
 #include "mrpt/rawlog/ScanSource.h"
 

@@ -4,7 +4,7 @@
 #include "report/scene/FrameRenderer.h"
 #include "report/scene/LiveScene.h"
 #include "support/LiveMoments.h"
-#include "support/SampleViews.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::report::test_frame_renderer {
 namespace {

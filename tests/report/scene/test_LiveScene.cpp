@@ -11,8 +11,8 @@
 #include "report/scene/LiveObjects.h"
 #include "report/scene/LiveScene.h"
 #include "support/LiveMoments.h"
-#include "support/SampleViews.h"
 #include "support/Scenes.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::report::test_live_scene {
 namespace {

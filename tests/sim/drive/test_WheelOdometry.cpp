@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/common/Angles.h"
-#include "core/common/Transform.h"
 #include "sim/drive/WheelOdometry.h"
 
 namespace polemcl::test_wheel_odometry {

@@ -8,8 +8,6 @@
 
 namespace polemcl::test_circle_fit {
 
-using namespace polemcl;
-
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;

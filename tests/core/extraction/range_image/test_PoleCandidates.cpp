@@ -5,7 +5,6 @@
 
 namespace polemcl::test_pole_candidates {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {

@@ -12,7 +12,6 @@
 
 namespace polemcl::test_range_image {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {

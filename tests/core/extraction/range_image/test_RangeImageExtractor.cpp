@@ -9,7 +9,6 @@
 
 namespace polemcl::test_range_image_extractor {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {

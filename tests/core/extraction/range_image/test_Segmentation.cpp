@@ -10,8 +10,6 @@
 
 namespace polemcl::test_segmentation {
 
-using namespace polemcl;
-
 namespace {
 
 /// One string a row; '.' is no return, a digit a range of as many metres.
