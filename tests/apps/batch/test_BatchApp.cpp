@@ -13,11 +13,10 @@
 #include "support/BatchTestFiles.h"
 
 namespace polemcl::test_batch_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 const std::string program = std::string(POLEMCL_BIN_DIR) + "/pole-batch";
 
@@ -95,8 +94,6 @@ class BatchApp : public testing::Test {
 };
 
 TempFolder* BatchApp::s_folder = nullptr;
-
-}  // namespace
 
 TEST_F(BatchApp, ReportsAllRuns) {
   const auto results = resultsIn(*s_folder / "done");
@@ -384,4 +381,5 @@ TEST_F(BatchApp, AFullDiskLosesNothing) {
   EXPECT_EQ(left("full"), left("done"));
 }
 
+}  // namespace
 }  // namespace polemcl::test_batch_app

@@ -6,11 +6,10 @@
 #include "support/BatchTestFiles.h"
 
 namespace polemcl::test_batch_plan {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 const std::string source = POLEMCL_SOURCE_DIR;
 
@@ -51,8 +50,6 @@ std::string argument(const std::vector<std::string>& command, const std::string&
 }
 
 using Names = std::vector<std::string>;
-
-}  // namespace
 
 TEST(BatchPlan, LocalizesInTheMapOfEarlierSessions) {
   const BatchPlan plan = planOf();
@@ -490,4 +487,5 @@ TEST(BatchPlan, OfSomebodyElseCannotDoHarm) {
   EXPECT_HAS(messageOf([&] { readPlan(folder / "plan.json"); }), "nested more than 64");
 }
 
+}  // namespace
 }  // namespace polemcl::test_batch_plan

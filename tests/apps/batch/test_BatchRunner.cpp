@@ -10,11 +10,10 @@
 #include "support/DiskCalls.h"
 
 namespace polemcl::test_batch_runner {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 using Names = std::vector<std::string>;
 using State = BatchFolder::State;
@@ -79,8 +78,6 @@ class BatchRunner : public testing::Test {
   std::map<std::string, std::string> m_failures;
   BatchProgress m_last;
 };
-
-}  // namespace
 
 TEST_F(BatchRunner, DoesWhatIsNeededFirst) {
   add("a", {{"write", "out", "A"}});
@@ -322,4 +319,5 @@ TEST_F(BatchRunner, SaysWhichBuildDidWhatIsDoneAgain) {
   EXPECT_EQ(run(1), (Names{"a", "b"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_batch_runner

@@ -10,10 +10,9 @@
 #include "support/Shell.h"
 
 namespace polemcl::test_allocation_limit {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 const fs::path bin = POLEMCL_BIN_DIR;
 
@@ -35,8 +34,6 @@ void expectRefused(const mrpt::obs::CObservation& observation, const std::string
   EXPECT_EQ(outcome.code, 1) << outcome.out;
   EXPECT_HAS(outcome.out, "forged.rawlog: truncated: the file ends inside an object");
 }
-
-}  // namespace
 
 // Without the limit, MRPT asks for the memory: the program has it, or ends with std::bad_alloc or
 // SIGSEGV.
@@ -70,4 +67,5 @@ TEST_F(AllocationLimit, FalseNumbersOfBeams) {
   expectRefused(scan, number(41), number(0x7fffffff));
 }
 
+}  // namespace
 }  // namespace polemcl::test_allocation_limit

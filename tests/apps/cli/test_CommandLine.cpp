@@ -12,10 +12,9 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_command_line {
+namespace {
 
 using namespace polemcl::apps;
-
-namespace {
 
 struct Result {
   int code = -1;
@@ -44,8 +43,6 @@ Result runWith(
   result.err = testing::internal::GetCapturedStderr();
   return result;
 }
-
-}  // namespace
 
 TEST(CommandLine, RunsTheWorkAndReturnsZero) {
   const auto result = runWith({"--input", "a", "--radius", "2.5"});
@@ -162,4 +159,5 @@ TEST(CommandLine, MessagesHoldNoRawBytes) {
   EXPECT_EQ(oneLine("cut \xe2\x80"), "cut ??");
 }
 
+}  // namespace
 }  // namespace polemcl::test_command_line

@@ -8,10 +8,9 @@
 #include "support/Shell.h"
 
 namespace polemcl::test_completion {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 const fs::path bin = POLEMCL_BIN_DIR;
 
@@ -30,8 +29,6 @@ std::string offered(const std::string& words) {
   EXPECT_EQ(outcome.code, 0) << words;
   return outcome.out;
 }
-
-}  // namespace
 
 TEST(Completion, OfSubcommandsAndOptions) {
   EXPECT_EQ(offered("pole-map b"), "build");
@@ -63,4 +60,5 @@ TEST(Completion, OfFilesFoldersAndSettings) {
   EXPECT_EQ(offered("pole-eval map --radius ''"), "");
 }
 
+}  // namespace
 }  // namespace polemcl::test_completion

@@ -24,11 +24,10 @@
 #include "support/Shell.h"
 
 namespace polemcl::test_help_texts {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 using Words = std::vector<std::string>;
 
@@ -83,8 +82,6 @@ const std::map<std::string, std::string>& helps() {
   }();
   return all;
 }
-
-}  // namespace
 
 TEST(HelpTexts, ProgramsAnswerInTheirNames) {
   for (const auto& [name, main] : kPrograms) {
@@ -196,4 +193,5 @@ Options:
   EXPECT_THROW(app.parse("--kind 1 in.rawlog", false), CLI::ValidationError);
 }
 
+}  // namespace
 }  // namespace polemcl::test_help_texts

@@ -10,11 +10,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_print_config {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// A program that needs a file and settings, both itself and below a subcommand; prints "worked".
 Outcome run(const std::vector<std::string>& arguments, bool takesConfig = true) {
@@ -34,8 +33,6 @@ Outcome run(const std::vector<std::string>& arguments, bool takesConfig = true) 
 }
 
 const std::string kKitti = std::string(POLEMCL_SOURCE_DIR) + "/config/kitti.ini";
-
-}  // namespace
 
 TEST(PrintConfig, PrintsAndEndsWithoutTheOtherArguments) {
   const Outcome result = succeeded(run({"--config", kKitti, "--print-config"}));
@@ -76,4 +73,5 @@ TEST(PrintConfig, StandsInTheHelp) {
   EXPECT_EQ(run({"--help"}, false).out.find("--print-config"), std::string::npos);
 }
 
+}  // namespace
 }  // namespace polemcl::test_print_config

@@ -4,11 +4,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_settings {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 std::vector<fs::path> configurations() {
   const std::vector<std::string> others{"batches", "live", "mrpt"};  // hold no settings of ours
@@ -32,8 +31,6 @@ std::string errorOf(const std::string& ini) {
   writeText(folder / "a.ini", ini);
   return messageOf([&] { loadSettings((folder / "a.ini").string()); });
 }
-
-}  // namespace
 
 TEST(Settings, EveryConfigurationLoadsAndSurvivesSaving) {
   const auto files = configurations();
@@ -142,4 +139,5 @@ TEST(Settings, RefusalsNameFileSectionAndKey) {
   EXPECT_HAS(messageOf([] { loadSettings("no/such/file.ini"); }), "no/such/file.ini");
 }
 
+}  // namespace
 }  // namespace polemcl::test_settings

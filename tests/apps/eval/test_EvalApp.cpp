@@ -5,11 +5,10 @@
 #include "support/EvalTest.h"
 
 namespace polemcl::test_eval_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class EvalApp : public EvalTest {
  protected:
@@ -33,8 +32,6 @@ class EvalApp : public EvalTest {
     return arguments;
   }
 };
-
-}  // namespace
 
 TEST(FiguresText, IsFilledIn) {
   const Json json{{"a", 1.25}, {"n", 7}, {"none", nullptr}, {"word", "slip"}, {"list", {1, 2}}};
@@ -178,4 +175,5 @@ TEST_F(EvalApp, WrongUsage) {
     expectUsageError(run(wrong));
 }
 
+}  // namespace
 }  // namespace polemcl::test_eval_app

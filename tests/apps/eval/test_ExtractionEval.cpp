@@ -2,11 +2,10 @@
 #include "support/EvalTest.h"
 
 namespace polemcl::test_extraction_eval {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class ExtractionEval : public EvalTest {
  protected:
@@ -51,8 +50,6 @@ class ExtractionEval : public EvalTest {
     return {"repeatability", "--poles", at(poles), "--truth", at(truth)};
   }
 };
-
-}  // namespace
 
 TEST_F(ExtractionEval, DetectionsAreScoredAgainstTheLabels) {
   // In the scans' frame pole 1 is at (10, 0), pole 2 at (0, 3): 3 cm beyond and 4 cm left of the
@@ -176,4 +173,5 @@ TEST_F(ExtractionEval, TurnedScansOfAStreetHaveTheSamePoles) {
   expectUsageError(run(rotation("p.rawlog", "0")));
 }
 
+}  // namespace
 }  // namespace polemcl::test_extraction_eval

@@ -4,11 +4,10 @@
 #include "support/EvalTest.h"
 
 namespace polemcl::test_motion_eval {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 constexpr double kStep = 0.4, kTurn = 0.02;
 
@@ -65,8 +64,6 @@ class MotionEvalTest : public EvalTest {
   }
 };
 
-}  // namespace
-
 TEST_F(MotionEvalTest, PolesTellTheMotionWhateverTruthAndOdometrySay) {
   writeDrive(13);
   writeTruth(13, 0.95);
@@ -115,4 +112,5 @@ TEST_F(MotionEvalTest, RefusesWhatCannotBeCompared) {
   expectUsageError(run(motion("0")));
 }
 
+}  // namespace
 }  // namespace polemcl::test_motion_eval

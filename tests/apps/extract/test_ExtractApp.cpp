@@ -12,11 +12,10 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_extract_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 struct CsvPole {
   std::size_t scan;
@@ -52,8 +51,6 @@ class ExtractApp : public StreetTest {
         {"--config", config(), "--input", at("in.rawlog"), "--output", at("poles.rawlog")}, more);
   }
 };
-
-}  // namespace
 
 TEST_F(ExtractApp, FindsThePolesOfEveryScan) {
   writeStreet(folder / "in", 4);
@@ -333,4 +330,5 @@ TEST_F(ExtractApp, WrongUsage) {
   expectUsageError(run({"--cvs", "x"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_extract_app

@@ -15,11 +15,10 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_inspect_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// A few scans of a simulated street as `folder/in`; `flipped`: in axes turned by 180° about x.
 void writeSimulated(const fs::path& folder, const std::string& lidar, double height,
@@ -112,8 +111,6 @@ std::string printed(const Inspection& inspection) {
   printInspection(text, inspection);
   return text.str();
 }
-
-}  // namespace
 
 TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
   writeSimulated(folder / "in", "hdl32e", 1.0);
@@ -371,4 +368,5 @@ TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
   EXPECT_EQ(written.timing.clock, 0);
 }
 
+}  // namespace
 }  // namespace polemcl::test_inspect_app

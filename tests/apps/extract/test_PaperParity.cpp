@@ -12,11 +12,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_paper_parity {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 struct Pole {
   double x, y, radius;
@@ -86,8 +85,6 @@ class PaperParity : public testing::TestWithParam<DataSet> {
   TempFolder folder;
 };
 
-}  // namespace
-
 // The issue asks for 97 % within 2 cm and 1 cm, and at most 3 % more. All are within the rounding
 // of their table, 0.1 mm; 1 % is left for other versions of the mathematical functions.
 TEST_P(PaperParity, FindsThePolesOfTheAuthorsProgram) {
@@ -114,4 +111,5 @@ INSTANTIATE_TEST_SUITE_P(
                     DataSet{"nclt_scan", "nclt", "/config/paper/nclt.ini", 4}),
     [](const auto& i) { return std::string(i.param.name); });
 
+}  // namespace
 }  // namespace polemcl::test_paper_parity

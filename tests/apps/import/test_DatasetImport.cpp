@@ -14,11 +14,10 @@
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_dataset_import {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 struct Pair {
   mrpt::obs::CActionRobotMovement2D::Ptr movement;  ///< null: none in the action
@@ -60,8 +59,6 @@ class DatasetImport : public testing::Test {
   TempFolder folder;
   ImportOptions options;
 };
-
-}  // namespace
 
 TEST_F(DatasetImport, KeepsTimesPathsAndTruth) {
   writeLine(options.input, 3);
@@ -391,4 +388,5 @@ TEST_F(DatasetImport, OldOutputsStayUntilTheNewOnesAreComplete) {
   EXPECT_EQ(readPairs(options.output).size(), 3u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_dataset_import

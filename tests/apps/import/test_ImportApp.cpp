@@ -10,11 +10,10 @@
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_import_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// While it lives, files can grow to one megabyte, and no further: as on a full disk.
 class SmallDisk {
@@ -50,8 +49,6 @@ std::string commentOf(const fs::path& rawlog) {
   reader.next(entry);
   return reader.comment();
 }
-
-}  // namespace
 
 TEST_F(ImportApp, KeepsTheMeasuringTimesInTheRawlog) {
   writeLine(folder / "in", 2);
@@ -236,4 +233,5 @@ TEST_F(ImportApp, TheTruthReplacesNoInput) {
                 {"--output", "s.tum: is an input (--poses)"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_import_app

@@ -18,12 +18,11 @@
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_import_owners {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
 using namespace testing_nclt;
-
-namespace {
 
 class ImportOwners : public testing::Test {
  protected:
@@ -59,8 +58,6 @@ class ImportOwners : public testing::Test {
   TempFolder folder;
   std::vector<mrpt::obs::CActionRobotMovement2D::Ptr> motions;
 };
-
-}  // namespace
 
 TEST_F(ImportOwners, NcltTakesOneSessionOfSeveral) {
   writeNclt();
@@ -190,4 +187,5 @@ TEST_F(ImportOwners, TheRealNcltScanGivesPolesWithItsConfiguration) {
   EXPECT_GE(std::count(rows.begin(), rows.end(), '\n'), 1 + 5) << rows;  // a header, poles
 }
 
+}  // namespace
 }  // namespace polemcl::test_import_owners

@@ -12,12 +12,11 @@
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_rosbag_import {
+namespace {
 
 using namespace polemcl::apps;
 using namespace polemcl::tests;
 using namespace testing_apps;
-
-namespace {
 
 constexpr double start = 1700000000;
 
@@ -59,8 +58,6 @@ Rawlog readRawlog(const fs::path& file) {
   result.timing = timingIn(reader.comment(), file.string());
   return result;
 }
-
-}  // namespace
 
 TEST_F(RosbagImport, MakesARawlogOfABag) {
   writeBag();
@@ -164,4 +161,5 @@ TEST_F(RosbagImport, BadInputAndWrongUsage) {
   expectUsageError(runProgram(importMain, importArguments(folder, "pcd", {"--cloud-topic", "/p"})));
 }
 
+}  // namespace
 }  // namespace polemcl::test_rosbag_import

@@ -12,11 +12,10 @@
 #include "support/StreetDatasets.h"
 
 namespace polemcl::test_labels_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 constexpr std::uint32_t trunk = 71, pole = 80, building = 50;
 
@@ -60,8 +59,6 @@ class LabelsApp : public testing::Test {
   }
   TempFolder folder;
 };
-
-}  // namespace
 
 TEST_F(LabelsApp, MapsTheLabelsOfASequence) {
   writeSequence(5);
@@ -149,4 +146,5 @@ TEST_F(LabelsApp, WrongUsage) {
   expectUsageError(runProgram(labelsMain, {"--input", "a", "--output", "b", "--stems", "x"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_labels_app

@@ -21,11 +21,10 @@
 #include "support/VelodynePackets.h"
 
 namespace polemcl::test_live_drive {
+namespace {
 
 using namespace testing_apps;
 using namespace polemcl::apps;
-
-namespace {
 
 constexpr double step = 0.5;  // m from turn to turn
 
@@ -129,8 +128,6 @@ class LiveDriveTest : public testing::Test {
   std::string streamed = "poses.jsonl", start = "0,0,0,0.3,3";
   std::atomic<bool> ended{false};
 };
-
-}  // namespace
 
 /// Each turn waits for the pose of the one before the last, so none is dropped on a slow machine.
 TEST_F(LiveDriveTest, PacketsBecomePosesUntilCtrlC) {
@@ -438,4 +435,5 @@ TEST_F(LiveDriveTest, NamesAWrongFileOfSensors) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
+}  // namespace
 }  // namespace polemcl::test_live_drive

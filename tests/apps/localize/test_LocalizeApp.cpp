@@ -10,19 +10,16 @@
 #include "support/Samples.h"
 
 namespace polemcl::test_localize_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class LocalizeApp : public LocalizeTest {};
 
 std::size_t lines(const std::string& text) {
   return std::count(text.begin(), text.end(), '\n');
 }
-
-}  // namespace
 
 TEST_F(LocalizeApp, WritesWhatTheContractSays) {
   const Outcome outcome = succeeded(runWithTruth({"--runs", "2"}));
@@ -403,4 +400,5 @@ TEST_F(LocalizeApp, WrongUsage) {
   expectUsageError(run({"--frame-every", "0"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_localize_app

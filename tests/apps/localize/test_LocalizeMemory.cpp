@@ -5,10 +5,9 @@
 #include "support/MemoryTaken.h"
 
 namespace polemcl::test_localize_memory {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 constexpr std::size_t directions = 1440;  // of the visibility range: 5.8 kB a scan
 
@@ -48,8 +47,6 @@ class LocalizeMemory : public LocalizeTest {
   }
 };
 
-}  // namespace
-
 // What grows is the truth: 32 bytes a pose, and up to twice that again while its vector grows.
 TEST_F(LocalizeMemory, DoesNotGrowWithTheDrive) {
   peakOf(100);  // what libraries keep from the first run on
@@ -58,4 +55,5 @@ TEST_F(LocalizeMemory, DoesNotGrowWithTheDrive) {
   EXPECT_GT(few, 100000);  // something was counted
 }
 
+}  // namespace
 }  // namespace polemcl::test_localize_memory

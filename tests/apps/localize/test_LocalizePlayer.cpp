@@ -4,17 +4,14 @@
 #include "support/LocalizeTest.h"
 
 namespace polemcl::test_localize_player {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 class LocalizePlayer : public LocalizeTest {
  protected:
   nlohmann::json timings() const { return nlohmann::json::parse(readText(out("timings.json"))); }
 };
-
-}  // namespace
 
 TEST_F(LocalizePlayer, TellsWhereTheStartCameFrom) {
   ASSERT_EQ(runWithTruth().code, 0);
@@ -121,4 +118,5 @@ TEST_F(LocalizePlayer, WhatIsKnownAtTheEndOnlyChangesNothingEither) {
   EXPECT_EQ(bytes(), before);
 }
 
+}  // namespace
 }  // namespace polemcl::test_localize_player

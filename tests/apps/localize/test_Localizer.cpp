@@ -14,10 +14,9 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_localizer {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 /// The street with odometry as poses, beside the scans of poles.
 class LocalizerTest : public LocalizeTest {
@@ -47,8 +46,6 @@ class LocalizerTest : public LocalizeTest {
   std::vector<Pose2D> odometry;
   std::vector<CObservationPoles> scans_poles;
 };
-
-}  // namespace
 
 TEST_F(LocalizerTest, GivesThePosesOfPoleLocalize) {
   const Pose2D& start = street.truth.front();
@@ -179,8 +176,6 @@ TEST_F(StreetTest, PointsBecomePoses) {
   }
 }
 
-namespace {
-
 /// A drive along the street of writeStreet() with odometry that comes by itself.
 class OdometryTest : public StreetTest {
  protected:
@@ -222,8 +217,6 @@ class OdometryTest : public StreetTest {
   }
   static constexpr Pose2D pose_odometry_map{30, -20, 1};
 };
-
-}  // namespace
 
 TEST_F(OdometryTest, MayComeAtOtherTimesThanTheScans) {
   Localizer own = started(), known = started();
@@ -368,8 +361,6 @@ TEST_F(OdometryTest, AfterAClockThatBeginsAgainANewStartTakesItsTimes) {
   }
 }
 
-namespace {
-
 /// Readings at 50 Hz and 10 m/s.
 OdometryReading fastReading(int i, double late) {
   OdometryReading reading;
@@ -377,8 +368,6 @@ OdometryReading fastReading(int i, double late) {
   reading.pose.x = 0.2 * i;
   return reading;
 }
-
-}  // namespace
 
 TEST(ScanOdometry, AClockThatIsSetBackByHalfASecondIsNoJump) {
   ScanOdometry odometry{MotionOptions()};
@@ -469,4 +458,5 @@ TEST_F(StreetTest, PointsBecomeTheMapOfPoleMapBuild) {
   EXPECT_HAS(wrong(truth.back().time + 1, NAN), "the pose of scan 12 is not finite");
 }
 
+}  // namespace
 }  // namespace polemcl::test_localizer

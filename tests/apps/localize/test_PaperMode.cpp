@@ -14,11 +14,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_paper_mode {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 constexpr double degree = M_PI / 180;
 
@@ -190,8 +189,6 @@ class PaperModeOnKitti : public testing::Test {
   fs::path m_data;
 };
 
-}  // namespace
-
 TEST(PaperMode, NothingBeyondThePaperIsOn) {
   for (const char* name : {"kitti", "kitti-mended", "nclt", "mulran"}) {
     SCOPED_TRACE(name);
@@ -257,4 +254,5 @@ TEST_F(PaperModeOnKitti, LocalizesAsTheFirstImplementationOnItsOwnPoles) {
   EXPECT_LE(now.run(2.5, 20).mean, 0.070);
 }
 
+}  // namespace
 }  // namespace polemcl::test_paper_mode

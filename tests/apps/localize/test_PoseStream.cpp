@@ -13,10 +13,9 @@
 #include "support/Shell.h"
 
 namespace polemcl::test_pose_stream {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 class PoseStream : public LocalizeTest {
  protected:
@@ -33,8 +32,6 @@ class PoseStream : public LocalizeTest {
     return count;
   }
 };
-
-}  // namespace
 
 TEST_F(PoseStream, TellsWhatTheFilesTell) {
   ASSERT_EQ(runWithTruth({"--stream", (folder / "poses.jsonl").string()}).code, 0);
@@ -132,4 +129,5 @@ TEST_F(PoseStream, SaysWhereARawlogStoppedToGrow) {
   expectFailure(runWithTruth({"--follow", "0.05"}), {"in.rawlog", "ends inside an object"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_pose_stream

@@ -10,10 +10,9 @@
 #include "support/LocalizeTest.h"
 
 namespace polemcl::test_run_bag {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 class RunBag : public LocalizeTest {
  protected:
@@ -29,8 +28,6 @@ class RunBag : public LocalizeTest {
     return all;
   }
 };
-
-}  // namespace
 
 TEST_F(RunBag, HoldsThePosesOfTheFirstRun) {
   ASSERT_EQ(runWithTruth(toBag()).code, 0);
@@ -122,4 +119,5 @@ TEST_F(RunBag, AppearsOnlyWithResults) {
   EXPECT_FALSE(fs::exists(file()));
 }
 
+}  // namespace
 }  // namespace polemcl::test_run_bag

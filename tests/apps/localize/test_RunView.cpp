@@ -10,11 +10,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_run_view {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 constexpr int scans = 12;
 using Names = std::vector<std::string>;
@@ -62,8 +61,6 @@ class RunViewTest : public testing::Test {
   LocalizationOptions localization;
   report::ViewOptions view;
 };
-
-}  // namespace
 
 TEST_F(RunViewTest, WithoutAnythingToShowNothingIsWritten) {
   run();
@@ -154,4 +151,5 @@ TEST_F(RunViewTest, WithoutADisplayAWindowIsRefused) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
+}  // namespace
 }  // namespace polemcl::test_run_view

@@ -9,11 +9,10 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_drive_doubts {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class DriveDoubts : public StreetTest {
  protected:
@@ -68,8 +67,6 @@ double certainTo(const std::string& report) {
   const std::string before = "the first pose is certain to ";
   return std::stod(report.substr(report.find(before) + before.size()));
 }
-
-}  // namespace
 
 /// Five scans without poles in a drive without odometry: 0.1 s apart, so the motion goes on over
 /// them.
@@ -192,4 +189,5 @@ TEST_F(DriveDoubts, PositionsBetweenScansFarApartAreCounted) {
                 {"few.csv: all 2 of its positions", "more than 2 s and 10 m apart"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_drive_doubts

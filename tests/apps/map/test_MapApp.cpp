@@ -14,11 +14,10 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class MapApp : public StreetTest {
  protected:
@@ -49,8 +48,6 @@ void expectTruePoles(const std::vector<MapPole>& poles) {
     EXPECT_LT(nearest, 0.05) << pole.x << ' ' << pole.y;
   }
 }
-
-}  // namespace
 
 TEST_F(MapApp, MapsTheStreet) {
   drive("in", 12);
@@ -428,4 +425,5 @@ TEST_F(MapApp, WrongUsage) {
                                         "a", "--output", "m.polemap"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_app

@@ -8,11 +8,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_map_convert_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class MapConvertApp : public testing::Test {
  protected:
@@ -41,8 +40,6 @@ class MapConvertApp : public testing::Test {
   TempFolder folder;
   AddedSessions scans;
 };
-
-}  // namespace
 
 TEST_F(MapConvertApp, GoesThroughEveryKindOfFile) {
   const std::vector<std::string> datum{"--datum", "42.25,-83.5,12"};
@@ -120,4 +117,5 @@ TEST_F(MapConvertApp, WrongUsage) {
   expectUsageError(runProgram(mapMain, {"convert", "a.csv", "--output", "c", "--config", "b"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_convert_app

@@ -8,11 +8,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_map_import_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class MapImportApp : public testing::Test {
  protected:
@@ -55,8 +54,6 @@ const char* const s_osm = R"(<?xml version="1.0"?>
  <way id="10"><nd ref="2"/><nd ref="3"/><tag k="type" v="line_thin"/></way>
 </osm>
 )";
-
-}  // namespace
 
 TEST_F(MapImportApp, TablesInUtmKeepDistancesAndRadii) {
   std::vector<std::string> options = s_utmOptions;
@@ -168,4 +165,5 @@ TEST_F(MapImportApp, BadInventoriesAreRefusedWithTheirPlace) {
   EXPECT_EQ(import("a.csv", s_utm, {"--columns", "a"}).code, 2);
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_import_app

@@ -9,11 +9,10 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_sessions {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// Three sessions on one street: along half of it, a bit farther, all of it and beyond.
 class MapSessions : public StreetTest {
@@ -64,8 +63,6 @@ class MapSessions : public StreetTest {
     return "";
   }
 };
-
-}  // namespace
 
 TEST_F(MapSessions, ThePaperTakesLaterSessionsWhereNobodyHasBeen) {
   const Outcome outcome = succeeded(map("paper.ini", {"one", "two", "three"}, "m.polemap"));
@@ -170,4 +167,5 @@ TEST_F(MapSessions, WrongUsage) {
   expectUsageError(runProgram(mapMain, {"build", "--add", "a.polemap"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_sessions

@@ -10,11 +10,10 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_update_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// A street on the day of the map; on the next day one pole is gone, one has come, one has moved.
 class MapUpdateApp : public StreetTest {
@@ -77,8 +76,6 @@ class MapUpdateApp : public StreetTest {
   }
   std::vector<StreetPole> yesterday, today;
 };
-
-}  // namespace
 
 TEST_F(MapUpdateApp, AFreshMapTellsWhenItsPolesWereSeen) {
   mapYesterday();
@@ -307,4 +304,5 @@ TEST_F(MapUpdateApp, WrongUsage) {
   expectUsageError(runProgram(mapMain, {"diff", "a", "b", "--csv", "c", "--png", "./c"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_update_app

@@ -8,10 +8,9 @@
 #include "support/TimedDrive.h"
 
 namespace polemcl::test_timing_doubt {
+namespace {
 
 using namespace polemcl::apps;
-
-namespace {
 
 /// The poses are those of the simulator, so they are dead reckoning without an error.
 MappingSession session(const ScanTiming& truth) {
@@ -38,8 +37,6 @@ TimingEstimate with(Turn turn, double clock, double significance = 0) {
 }
 
 const TimingEstimate kNothing = with(Turn::compensated, 0);
-
-}  // namespace
 
 TEST(TimingDoubt, SeesClocksThatDiffer) {
   ScanTiming late{Turn::compensated};
@@ -104,4 +101,5 @@ TEST(TimingDoubt, OfAdjustedPosesOnlyTheTurnCounts) {
              "not look corrected for the motion during a turn (6.2 standard errors)");
 }
 
+}  // namespace
 }  // namespace polemcl::test_timing_doubt

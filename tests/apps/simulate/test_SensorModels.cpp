@@ -10,11 +10,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_sensor_models {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 struct Sensor {
   std::string name, keys;  ///< keys of `[sensor]`
@@ -64,8 +63,6 @@ class SensorModels : public testing::TestWithParam<Sensor> {
 std::string nameOf(const testing::TestParamInfo<Sensor>& info) {
   return info.param.name;
 }
-
-}  // namespace
 
 TEST_P(SensorModels, ServesEveryProgram) {
   const std::string c = at("s.ini"), scans = at("s.rawlog"), poles = at("p.rawlog"),
@@ -129,4 +126,5 @@ TEST(SensorModelsOfDetections, AModelServesTheBeamsItWasFittedFor) {
                  "table of 4 beams from 12 to -9 deg", "fit_detections.py"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_sensor_models

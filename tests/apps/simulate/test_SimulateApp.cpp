@@ -5,11 +5,11 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_simulate_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
 
-namespace {
 class SimulateApp : public testing::Test {
  protected:
   SimulateApp() { configure("vlp16\nheight_m = 1.2"); }
@@ -23,8 +23,6 @@ class SimulateApp : public testing::Test {
   std::string at(const std::string& name) { return (folder / name).string(); }
   TempFolder folder;
 };
-}  // namespace
-
 TEST_F(SimulateApp, WritesTheFolderLayoutAndTheEffectiveSettings) {
   const Outcome outcome =
       succeeded(run({"--seed", "7", "--day", "2", "--length", "50", "--sensor", "os1_64"}));
@@ -106,4 +104,5 @@ TEST_F(SimulateApp, QuietSaysNothing) {
   EXPECT_EQ(outcome.out + outcome.err, "");
 }
 
+}  // namespace
 }  // namespace polemcl::test_simulate_app

@@ -11,11 +11,11 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_simulated_poles {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
 
-namespace {
 const std::string s_model = std::string(POLEMCL_SOURCE_DIR) + "/share/models/hdl32e.json";
 
 class SimulatedPoles : public testing::Test {
@@ -42,8 +42,6 @@ void expectSame(const PoleDetection& a, const PoleDetection& b) {
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.covariance, b.covariance);
 }
-}  // namespace
-
 TEST_F(SimulatedPoles, AreThoseOfSimulatingImportingAndExtracting) {
   configure("scans = 5\n");
   ASSERT_EQ(run("streamed.rawlog", {"--output", at("scans")}).code, 0);
@@ -188,4 +186,5 @@ TEST_F(SimulatedPoles, GiveATableOfSightingsWithoutTheirScans) {
   expectFailure(sightings("b.rawlog"), {"b.rawlog", "scans"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_simulated_poles

@@ -7,10 +7,9 @@
 #include "core/evaluation/TrajectoryEvaluation.h"
 
 namespace polemcl::test_trajectory_evaluation {
+namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
-
-namespace {
 
 /// 1 m/s along x, a sample a second, from 0 to `last` seconds.
 std::vector<StampedPose2D> straightTruth(int last) {
@@ -41,8 +40,6 @@ std::size_t bruteOneToOne(const Points& truth, const Points& map, double radius,
   }
   return best;
 }
-
-}  // namespace
 
 TEST(Evaluation, ErrorsByHand) {
   // At 1 s 0.3 m ahead, 0.4 m to the left, 2° to the left; at 2 s 0.5 m behind, 4° to the right.
@@ -296,4 +293,5 @@ TEST(Evaluation, MapScoreRefusesPolesThatAreNotFinite) {
   EXPECT_THROW(scoreMap({{0, 0}}, {bad}, 1, false), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_trajectory_evaluation

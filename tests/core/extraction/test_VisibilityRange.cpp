@@ -8,10 +8,9 @@
 #include "support/KnownScene.h"
 
 namespace polemcl::test_visibility_range {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 constexpr double kTurn = 2 * M_PI;
 
@@ -38,8 +37,6 @@ std::vector<float> visibilityRangeOf(const PointList& points, const SensorOption
 float at(const std::vector<float>& ranges, double bearing) {
   return ranges[visibilityRangeSector(bearing, ranges.size())];
 }
-
-}  // namespace
 
 TEST(VisibilityRange, SectorsCountFromBehindToTheLeft) {
   EXPECT_EQ(visibilityRangeSector(-M_PI, 256), 0u);
@@ -178,4 +175,5 @@ TEST(VisibilityRange, IsEmptyByThePapersMethodAndOfCameras) {
   EXPECT_TRUE(ranges.empty());
 }
 
+}  // namespace
 }  // namespace polemcl::test_visibility_range

@@ -17,10 +17,9 @@
 #include "support/PoleCity.h"
 
 namespace polemcl::test_global_localizer_on_maps {
+namespace {
 
 using tests::Way;
-
-namespace {
 
 std::filesystem::path dataFolder() {
   const char* folder = std::getenv("POLEMCL_DATA");
@@ -146,8 +145,6 @@ Count starts(const std::vector<MapPole>& map, const tests::Surroundings& things,
   return result;
 }
 
-}  // namespace
-
 /// Half of this map's poles are labelled. Two thirds of the labelled poles are on the map, 0.16 m
 /// off in the median. Unlabelled things are taken for a pole again in half of the cases.
 TEST(GlobalLocalizerOnMaps, FindsTheRobotInAPublishedMap) {
@@ -224,4 +221,5 @@ TEST(GlobalLocalizerOnMaps, FindsTheRobotAmongThePolesOfRealCities) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_global_localizer_on_maps

@@ -5,7 +5,6 @@
 #include "core/localization/KldSampleSize.h"
 
 namespace polemcl::test_kld_sample_size {
-
 namespace {
 
 KldOptions wide() {
@@ -14,8 +13,6 @@ KldOptions wide() {
   options.maxParticles = 1000000;
   return options;
 }
-
-}  // namespace
 
 TEST(KldSampleSize, IsTheQuantileOfChiSquareOverTwiceEpsilon) {
   struct Row {
@@ -62,4 +59,5 @@ TEST(KldSampleSize, CountsTheBinsOfTheChosen) {
   EXPECT_EQ(occupiedBins(poses, {}, options), 0u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_kld_sample_size

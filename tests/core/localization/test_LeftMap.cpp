@@ -1,15 +1,12 @@
 #include "support/HealthFeed.h"
 
 namespace polemcl::test_left_map {
+namespace {
 
 using tests::Feed;
 
-namespace {
-
 using State = HealthState;
 using Reason = HealthReason;
-
-}  // namespace
 
 /// The map ends: of ten poles near the vehicle it has fewer and fewer, and all of these are found.
 TEST(LeftMap, BeyondTheMapPolesWithoutAMatchSayNothing) {
@@ -53,4 +50,5 @@ TEST(LeftMap, APoseThatIsNotConfirmedYetHasNotLeftTheMap) {
   EXPECT_FALSE(feed.monitor.hasLeftMap());
 }
 
+}  // namespace
 }  // namespace polemcl::test_left_map

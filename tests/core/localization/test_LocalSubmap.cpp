@@ -10,7 +10,6 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_local_submap {
-
 namespace {
 
 PoleDetection seen(double x, double y, double variance = 0.01) {
@@ -33,8 +32,6 @@ SubmapOptions patient() {
 }
 
 const double s_nan = std::nan("");
-
-}  // namespace
 
 TEST(LocalSubmap, AveragesByInformation) {
   LocalSubmap submap(exact());
@@ -234,8 +231,6 @@ TEST(LocalSubmap, ClearStartsAnew) {
   EXPECT_EQ(submap.poles()[0].centre.x(), 10);
 }
 
-namespace {
-
 /// Against the truth of 80 simulated drives.
 struct Consistency {
   double squared = 0;  ///< mean squared error in units of the covariance: 2 if that is exact
@@ -276,8 +271,6 @@ Consistency consistencyOf(const tests::DriveOptions& driving, const SubmapOption
   result.squared /= static_cast<double>(result.poles - result.strays);
   return result;
 }
-
-}  // namespace
 
 TEST(LocalSubmap, PolesAreAsCertainAsItSays) {
   tests::DriveOptions exact;
@@ -405,4 +398,5 @@ TEST(LocalSubmap, TakesOnlyWhatIsSeenNow) {
   EXPECT_EQ(submap.take(2, 0).size(), 1u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_local_submap

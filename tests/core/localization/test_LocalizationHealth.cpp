@@ -7,15 +7,12 @@
 #include "support/HealthFeed.h"
 
 namespace polemcl::test_localization_health {
+namespace {
 
 using tests::Feed;
 
-namespace {
-
 using State = HealthState;
 using Reason = HealthReason;
-
-}  // namespace
 
 TEST(LocalizationHealth, SearchingUntilAPoseIsAssumed) {
   HealthMonitor monitor;
@@ -417,4 +414,5 @@ TEST(HealthMonitor, AVehicleThatIsMovedAtRestIsNoticed) {
   feed.scans(50, 0.1).expect(State::degraded, Reason::mismatch);
 }
 
+}  // namespace
 }  // namespace polemcl::test_localization_health

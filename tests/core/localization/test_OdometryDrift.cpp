@@ -7,14 +7,11 @@
 #include "sim/common/Random.h"
 
 namespace polemcl::test_odometry_drift {
-
 namespace {
 
 Eigen::Matrix3d diagonal(double x, double y, double yaw) {
   return Eigen::Vector3d(x, y, yaw).asDiagonal();
 }
-
-}  // namespace
 
 TEST(OdometryDrift, AStepsPositionNoiseTurnsWithTheRobot) {
   const OdometryDrift then;
@@ -84,4 +81,5 @@ TEST(OdometryDrift, AgreesWithDrivesDrawnAtRandom) {
   EXPECT_LT((sum - predicted).norm(), 0.03 * predicted.norm()) << sum << "\n\n" << predicted;
 }
 
+}  // namespace
 }  // namespace polemcl::test_odometry_drift

@@ -13,10 +13,9 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_pole_likelihood {
+namespace {
 
 using namespace polemcl::tests;
-
-namespace {
 
 PoleDetection exactAt(double x, double y) {
   return detectionAt(x, y, 0);
@@ -99,8 +98,6 @@ double oracle(const Scene& scene, const Pose2D& pose, const LikelihoodOptions& o
 }
 
 constexpr LikelihoodModel kModels[] = {LikelihoodModel::paper, LikelihoodModel::mixture};
-
-}  // namespace
 
 TEST(PoleLikelihood, PaperByHand) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::paper, false);
@@ -388,4 +385,5 @@ TEST(PoleLikelihood, RefusesWeightsThatAreNone) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_likelihood

@@ -11,7 +11,6 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_map_accumulator {
-
 namespace {
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -75,8 +74,6 @@ void expectSame(const std::vector<MapPole>& a, const std::vector<MapPole>& b) {
     EXPECT_EQ(a[i].covariance, b[i].covariance);
   }
 }
-
-}  // namespace
 
 TEST(MapAccumulator, UsesEverythingUnlessAsked) {
   const auto poles = somePoles();
@@ -223,4 +220,5 @@ TEST(MapAccumulator, RefusesASessionInAnotherFrame) {
   EXPECT_NO_THROW(map.add("farther", drive(19000, 19050, 0)));  // near one of them
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_accumulator

@@ -14,10 +14,9 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_map_updater {
+namespace {
 
 using tests::messageOf;
-
-namespace {
 
 struct Place {
   double x, y;
@@ -71,8 +70,6 @@ LandmarkMap updatedBy(const LandmarkMap& map, const std::vector<SessionScan>& sc
                       MapUpdateCounts* counts = nullptr) {
   return updateMap(map, scans, {}, {}, counts);
 }
-
-}  // namespace
 
 TEST(MapUpdater, WhatIsSeenStays) {
   MapUpdateCounts counts;
@@ -421,4 +418,5 @@ TEST(MapUpdater, NothingComesOfNothing) {
   EXPECT_EQ(updatedBy(kept({{10, 5}}), {}).poles.size(), 1u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_updater

@@ -11,10 +11,9 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_pole_map_builder {
+namespace {
 
 using namespace polemcl::tests;
-
-namespace {
 
 /// A scan at (x, 0) looking along x that sees poles at the given places of the map, without error.
 MappingScan scanAt(double x, const std::vector<Eigen::Vector2d>& seen, std::uint32_t drive = 0) {
@@ -51,8 +50,6 @@ PoleMapOptions sectionsOfOneMetre(int minCount, int maxGap) {
 std::size_t polesOf(const std::string& sees, int minCount, int maxGap) {
   return buildPoleMap(pattern(sees), sectionsOfOneMetre(minCount, maxGap)).poles.size();
 }
-
-}  // namespace
 
 TEST(PoleMapBuilder, KeepsAPoleSeenOftenEnough) {
   EXPECT_EQ(polesOf("xxx", 3, 0), 1u);
@@ -266,8 +263,6 @@ TEST(PoleMapBuilder, TellsWhatItDid) {
   EXPECT_NEAR(result.pathLength, 6.5, 1e-9);
 }
 
-namespace {
-
 /// A street of 200 m up and down, poles on both sides, detections and poses with noise, clutter.
 struct Street {
   std::vector<Eigen::Vector2d> truth;
@@ -307,8 +302,6 @@ Street noisyStreet(std::uint64_t seed) {
   }
   return street;
 }
-
-}  // namespace
 
 TEST(PoleMapBuilder, MapsStreetsDrivenTwiceToTheCentimetre) {
   for (bool everyScan : {false, true}) {
@@ -393,4 +386,5 @@ TEST(PoleMapBuilder, RefusesPlacesBeyondAllMaps) {
   EXPECT_REFUSED(buildPoleMap(scans, {}), "pole 0 of scan 2 has a place more than 1e9 m away");
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_map_builder

@@ -7,7 +7,6 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_pole_map_paper {
-
 namespace {
 
 /// The authors' program's map, with sections of 1 m.
@@ -43,8 +42,6 @@ std::vector<MappingScan> drive(const std::vector<std::vector<Eigen::Vector2d>>& 
 }
 
 const Eigen::Vector2d pole(10, 5);
-
-}  // namespace
 
 TEST(PoleMapPaper, AChainIsOnePoleOfPlainMean) {
   // Neighbours 0.2 m apart overlap, the ends, 0.8 m apart, do not.
@@ -124,4 +121,5 @@ TEST(PoleMapPaper, EveryScanHasNoPassedMiddles) {
   EXPECT_THROW(checkOptions(options), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_map_paper

@@ -10,7 +10,6 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_session_alignment {
-
 namespace {
 
 constexpr double s_length = 300;  // m of street
@@ -84,8 +83,6 @@ std::vector<SessionScan> aligned(const std::vector<SessionScan>& scans,
                                  AlignmentSummary* summary = nullptr) {
   return alignedSession(scans, landmarksFrom(map), {}, {}, summary);
 }
-
-}  // namespace
 
 TEST(SessionAlignment, RemovesErrorsOfDecimetres) {
   const auto right = driveThrough(street()), wrong = erring(right);
@@ -203,4 +200,5 @@ TEST(SessionAlignment, UncertainPosesWeighLess) {
   EXPECT_THROW(updateMap(landmarksFrom(map), {broken}, {}, {}), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_session_alignment

@@ -12,11 +12,10 @@
 #include "support/SimulatedScans.h"
 
 namespace polemcl::test_beam_table_estimator {
+namespace {
 
 using polemcl::clouds::kDegree;
 using polemcl::clouds::PointList;
-
-namespace {
 
 PointList street(const std::string& lidar, double height, std::uint64_t world = 3) {
   PointList points;
@@ -56,8 +55,6 @@ void expectSame(const BeamTableEstimate& a, const BeamTableEstimate& b) {
 std::string refusal(const PointsView& points) {
   return tests::messageOf([&] { estimateBeamTable({points}); });
 }
-
-}  // namespace
 
 class BeamFinderOnStreets : public ::testing::TestWithParam<std::pair<const char*, double>> {};
 
@@ -217,4 +214,5 @@ TEST(BeamTableEstimator, RefusesTooFewPoints) {
   EXPECT_HAS(refusal({}), "2000 are needed");
 }
 
+}  // namespace
 }  // namespace polemcl::test_beam_table_estimator

@@ -10,7 +10,6 @@
 
 namespace polemcl::test_drive_mapping {
 namespace {
-
 using tests::Dice;
 
 constexpr double kStep = 0.5;        // m
@@ -155,8 +154,6 @@ std::vector<Eigen::Vector2d> evenPoles(double length) {
     for (const double side : {-6.0, 6.0}) poles.emplace_back(way, side);
   return poles;
 }
-
-}  // namespace
 
 TEST(DriveMapping, ClosesTheLoopOfARingRoad) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
@@ -369,4 +366,5 @@ TEST(DriveMapping, NeedsPoles) {
   EXPECT_REFUSED(map({one}), "only 1 poles", "2 are needed");
 }
 
+}  // namespace
 }  // namespace polemcl::test_drive_mapping

@@ -10,7 +10,6 @@
 
 namespace polemcl::test_pole_motions {
 namespace {
-
 using tests::Frame;
 using tests::PoleCity;
 
@@ -58,8 +57,6 @@ class PoleMotionsTest : public testing::Test {
   std::vector<PoleScan> scans;
   std::vector<Pose2D> truth;
 };
-
-}  // namespace
 
 TEST_F(PoleMotionsTest, AllMotionsByThePoles) {
   forgetMotions(1, scans.size());
@@ -242,4 +239,5 @@ TEST_F(PoleMotionsTest, RefusesWhereNothingTellsTheWay) {
   EXPECT_REFUSED(fillMotions(scans), "no odometry leads to scan 21 at 2.1");
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_motions

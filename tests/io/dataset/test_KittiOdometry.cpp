@@ -5,11 +5,10 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_kitti_odometry {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
@@ -37,8 +36,6 @@ class KittiOdometryTest : public FolderTest {
     return messageOf([&] { readKittiOdometry(sequence(), kIdentity); });
   }
 };
-
-}  // namespace
 
 TEST_F(KittiOdometryTest, CamerasPosesBecomeLidarPosesByHand) {
   const ScanFolder folder = readKittiOdometry(sequence(), kIdentity);
@@ -171,4 +168,5 @@ TEST_F(KittiOdometryTest, ReadsRealScansLaidOutAsASequence) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_kitti_odometry

@@ -6,11 +6,10 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_kitti_raw {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
@@ -69,8 +68,6 @@ class KittiRawTest : public FolderTest {
     return messageOf([&] { readDrive(); });
   }
 };
-
-}  // namespace
 
 TEST_F(KittiRawTest, ParseKittiTimeByHand) {
   EXPECT_EQ(parseKittiTime("1970-01-01 00:00:00", ""), 0);
@@ -291,4 +288,5 @@ TEST_F(KittiRawTest, RefusesAScanCutShort) {
   expectIn(refusal(), frameName(2, ".bin"), "cut short");
 }
 
+}  // namespace
 }  // namespace polemcl::test_kitti_raw

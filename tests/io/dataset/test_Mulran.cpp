@@ -5,11 +5,10 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_mulran {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 constexpr const char* kNames[] = {"1561000444390857630", "1561000444489636410",
                                   "1561000444590000000"};
@@ -38,8 +37,6 @@ class MulranTest : public FolderTest {
     return messageOf([&] { load(); });
   }
 };
-
-}  // namespace
 
 TEST_F(MulranTest, ReadsScansAndTheVehiclesPoses) {
   const ScanFolder sequence = load();
@@ -129,4 +126,5 @@ TEST_F(MulranTest, RefusesWhatIsDamaged) {
   expectIn(refusal(), path("KAIST01/Ouster").string(), "No such file");
 }
 
+}  // namespace
 }  // namespace polemcl::test_mulran

@@ -5,12 +5,11 @@
 #include "support/NcltSamples.h"
 
 namespace polemcl::test_nclt {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace testing_nclt;
-
-namespace {
 
 constexpr std::uint64_t kPeriod = 200000;  ///< us between scans
 
@@ -56,8 +55,6 @@ class NcltTest : public FolderTest {
   }
   void remove(const std::string& name) const { fs::remove_all(path("2012-01-15/" + name)); }
 };
-
-}  // namespace
 
 TEST_F(NcltTest, MapIsEastNorthUpAndTheRobotUpright) {
   const ScanFolder session = load();
@@ -268,4 +265,5 @@ TEST_F(NcltTest, TakesPositionsFromSatellites) {
   expectIn(refusal(), "gps.csv:1: ", "4 numbers, 8 expected");
 }
 
+}  // namespace
 }  // namespace polemcl::test_nclt

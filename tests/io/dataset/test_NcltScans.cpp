@@ -6,12 +6,11 @@
 #include "support/NcltSamples.h"
 
 namespace polemcl::test_nclt_scans {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace testing_nclt;
-
-namespace {
 
 class NcltScansTest : public FolderTest {
  protected:
@@ -24,8 +23,6 @@ class NcltScansTest : public FolderTest {
   }
   std::vector<std::string> notes;
 };
-
-}  // namespace
 
 TEST_F(NcltScansTest, ReadsPointsInStepsOfFiveMillimetres) {
   // The first point by hand: 21000 = 5.000 m, 19000 = -5.000 m, 20199 = 0.995 m.
@@ -148,4 +145,5 @@ TEST_F(NcltScansTest, TheMotionOfTheBodyIsTakenOut) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_nclt_scans

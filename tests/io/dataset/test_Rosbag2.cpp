@@ -9,12 +9,11 @@
 #include "support/RosBags.h"
 
 namespace polemcl::test_rosbag2 {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace polemcl::tests;
-
-namespace {
 
 constexpr double kStart = 1700000000;  ///< s; a double holds it to 0.2 us
 
@@ -65,8 +64,6 @@ void expectNote(const ScanFolder& folder, const std::string& text) {
   for (const auto& note : folder.notes) all += note + " | ";
   EXPECT_HAS(all, text);
 }
-
-}  // namespace
 
 TEST_F(Rosbag2Test, ReadsCloudsOneByOne) {
   for (const double time : {0.5, 0.6, 0.6, 0.7})
@@ -429,4 +426,5 @@ TEST_F(Rosbag2Test, OfSeveralReceiversOneIsChosen) {
   expectIn(refusal(), "--gnss-topic /points: no such topic");
 }
 
+}  // namespace
 }  // namespace polemcl::test_rosbag2

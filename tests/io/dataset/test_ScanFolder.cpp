@@ -5,11 +5,10 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_scan_folder {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
@@ -36,8 +35,6 @@ class ScanFolderTest : public FolderTest {
     return messageOf([&] { readScanFolder(m_folder, kIdentity); });
   }
 };
-
-}  // namespace
 
 TEST_F(ScanFolderTest, ScansAndTimesAlone) {
   const ScanFolder folder = readScanFolder(m_folder, kIdentity);
@@ -253,4 +250,5 @@ TEST_F(ScanFolderTest, FoldersOfPcdFiles) {
   EXPECT_EQ(holed.read(holed.scans[1]).size(), 0u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_scan_folder

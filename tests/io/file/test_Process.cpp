@@ -6,12 +6,9 @@
 
 namespace polemcl::io::test_process {
 namespace {
-
 std::string messageOfShell(const std::string& script) {
   return tests::messageOf([&] { runFilter({"/bin/sh", "-c", script}, ""); });
 }
-
-}  // namespace
 
 TEST(Process, AFilterTakesAndGivesAnyBytes) {
   std::string bytes(3'000'000, '\0');  // more than a pipe holds
@@ -39,4 +36,5 @@ TEST(Process, AScriptThatIsNotInstalledIsNamed) {
   EXPECT_HAS(tests::messageOf([] { pythonScript("none.py"); }), "report/none.py");
 }
 
+}  // namespace
 }  // namespace polemcl::io::test_process

@@ -3,11 +3,10 @@
 #include "support/NumpyFiles.h"
 
 namespace polemcl::test_pole_tables {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 class PoleTables : public FolderTest {};
 
@@ -28,8 +27,6 @@ PoleMapData sample() {
   }
   return map;
 }
-
-}  // namespace
 
 TEST_F(PoleTables, CsvComesBack) {
   const PoleMapData before = sample();
@@ -105,4 +102,5 @@ TEST_F(PoleTables, ReadsTheAuthorsFiles) {
   EXPECT_EQ(truth.poles.front().radius, 0.1);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_tables

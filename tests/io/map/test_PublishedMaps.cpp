@@ -10,7 +10,6 @@
 #include "io/map/PoleTables.h"
 
 namespace polemcl::test_published_maps {
-
 namespace {
 
 class PublishedMaps : public testing::Test {
@@ -24,8 +23,6 @@ class PublishedMaps : public testing::Test {
   }
   std::vector<Eigen::Vector2d> truth, map;
 };
-
-}  // namespace
 
 TEST_F(PublishedMaps, NcltTheAuthorsWay) {
   ASSERT_EQ(truth.size(), 1205u);
@@ -49,4 +46,5 @@ TEST_F(PublishedMaps, NcltOneToOne) {
   EXPECT_NEAR(half.f1, 0.542, 5e-4);
 }
 
+}  // namespace
 }  // namespace polemcl::test_published_maps

@@ -3,12 +3,11 @@
 #include "support/RosBags.h"
 
 namespace polemcl::test_bag {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace polemcl::tests;
-
-namespace {
 
 class BagTest : public FolderTest {
  protected:
@@ -30,8 +29,6 @@ class BagTest : public FolderTest {
     return result;
   }
 };
-
-}  // namespace
 
 TEST_F(BagTest, ReadsOneFileInTheOrderOfRecording) {
   {
@@ -188,4 +185,5 @@ TEST_F(BagTest, RefusesADamagedFile) {
   EXPECT_REFUSED(contents(Bag(path("a.db3")), 1), "a.db3", "malformed");
 }
 
+}  // namespace
 }  // namespace polemcl::test_bag

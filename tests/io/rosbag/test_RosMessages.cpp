@@ -8,12 +8,11 @@
 #include "support/RosBags.h"
 
 namespace polemcl::test_ros_messages {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace polemcl::tests;
-
-namespace {
 
 /// Each beginning of the message that is too short.
 void expectRefusedWhenCut(const std::string& message,
@@ -40,8 +39,6 @@ TestCloud timed(const std::string& name, std::uint8_t type, T time) {
   cloud.point(1, 2, 3, 4).put(time);
   return cloud;
 }
-
-}  // namespace
 
 TEST(RosMessages, OdometryInBothByteOrders) {
   for (const bool bigEndian : {false, true}) {
@@ -242,4 +239,5 @@ TEST(PointCloud2, RefusesSizesThatDoNotFit) {
     EXPECT_REFUSED(decodeCloud(message.substr(0, size), "a.db3: ", true), "a.db3: ", "cut short");
 }
 
+}  // namespace
 }  // namespace polemcl::test_ros_messages

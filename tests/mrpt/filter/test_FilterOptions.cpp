@@ -7,7 +7,6 @@
 #include "mrpt/filter/FilterOptions.h"
 
 namespace polemcl::test_filter_options {
-
 namespace {
 
 struct All {
@@ -29,8 +28,6 @@ All load(const std::string& text) {
   reader.finish();
   return all;
 }
-
-}  // namespace
 
 TEST(FilterOptions, EveryFieldIsReadFromItsKey) {
   const All all = load(
@@ -76,4 +73,5 @@ TEST(FilterOptions, RefusesAStartThatIsNoPlace) {
   EXPECT_THROW(checkOptions(start), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_filter_options

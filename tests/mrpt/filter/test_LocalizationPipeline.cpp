@@ -9,7 +9,6 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_localization_pipeline {
-
 namespace {
 
 /// A city and drives through it in the form that the pipeline takes: one frame per metre.
@@ -83,8 +82,6 @@ class RegularCity : public PoleLocalizationTest {
     return options;
   }
 };
-
-}  // namespace
 
 TEST_F(PoleLocalizationTest, TracksFromAStartPoseAndSaysOk) {
   driveFrom(1, 150);
@@ -483,4 +480,5 @@ TEST(TrackingOptions, RefusesValuesOutOfRange) {
   EXPECT_THROW(checkOptions(options), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_localization_pipeline

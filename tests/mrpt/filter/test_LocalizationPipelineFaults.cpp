@@ -13,7 +13,6 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_localization_pipeline_faults {
-
 namespace {
 
 class PoleLocalizationFaults : public testing::Test {
@@ -71,8 +70,6 @@ class PoleLocalizationFaults : public testing::Test {
   std::vector<PoleScan> frames;
   std::vector<Pose2D> truth;
 };
-
-}  // namespace
 
 TEST_F(PoleLocalizationFaults, AStuckOdometryIsDegradedAndThePoseStaysRight) {
   drive(210);
@@ -455,4 +452,5 @@ TEST_F(PoleLocalizationFaults, AScanWithoutPolesAtTheStartIsNoFirstScan) {
   EXPECT_LT(update.health.spread, 0.1);
 }
 
+}  // namespace
 }  // namespace polemcl::test_localization_pipeline_faults

@@ -12,7 +12,6 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_motion_action {
-
 namespace {
 
 PoseWithCovariance usual() {
@@ -39,8 +38,6 @@ std::string refusal(const std::function<void(PoseWithCovariance&)>& change) {
 bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
-
-}  // namespace
 
 TEST(MotionAction, CarriesMeanAndCovarianceAlsoThroughAFile) {
   const auto action = makeMotionAction(usual(), extra(0.1, 0.02));
@@ -121,4 +118,5 @@ TEST(MotionAction, RefusesAHugeCovariance) {
   EXPECT_TRUE(holds(refusal(sigma(2, 1.01)), "too uncertain"));
 }
 
+}  // namespace
 }  // namespace polemcl::test_motion_action

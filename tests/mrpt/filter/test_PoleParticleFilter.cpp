@@ -9,6 +9,7 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_pole_particle_filter {
+namespace {
 
 using tests::at;
 using tests::degree;
@@ -19,8 +20,6 @@ using tests::PoleStreet;
 using tests::smallMap;
 using tests::still;
 using tests::StreetOptions;
-
-namespace {
 
 struct Errors {
   double position = 0, heading = 0;  ///< means, m and degrees
@@ -43,8 +42,6 @@ Errors drive(PoleParticleFilter& localizer, const PoleStreet& street,
   }
   return errors;
 }
-
-}  // namespace
 
 TEST(PoleParticleFilter, FollowsAStreet) {
   for (std::uint32_t seed : {1, 2, 3}) {
@@ -393,4 +390,5 @@ TEST(PoleParticleFilter, RefusesBadFramesAndStaysAsItWas) {
   EXPECT_NO_THROW(localizer.step(emptyFrame(6)));
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_particle_filter

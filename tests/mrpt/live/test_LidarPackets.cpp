@@ -13,10 +13,9 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_lidar_packets {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 std::string captureOf(const std::string& name) {
   return std::string(POLEMCL_SOURCE_DIR) + "/tests/mrpt/live/captures/" + name;
@@ -34,8 +33,6 @@ LidarPoints pointsOf(const LidarPackets& packets, const std::string& packet) {
     if (packets.phase(packet, i)) packets.append(packet, i, points);
   return points;
 }
-
-}  // namespace
 
 /// Numbers of returns and sums of ranges by share/experiments/lidar_packets.py, whose range images
 /// of whole captures have the checksums that Ouster states for four of these LiDARs.
@@ -240,4 +237,5 @@ TEST_F(OusterPacketsTest, RefusesOtherMetadata) {
   expect(with("15.8", "1500"), "below 1 m");
 }
 
+}  // namespace
 }  // namespace polemcl::test_lidar_packets

@@ -14,11 +14,10 @@
 #include "support/VelodynePackets.h"
 
 namespace polemcl::test_velodyne_receiver {
+namespace {
 
 using namespace testing_apps;
 using mrpt::obs::CObservationVelodyneScan;
-
-namespace {
 
 using Packets = std::vector<std::string>;
 
@@ -74,8 +73,6 @@ void expectSamePackets(const CObservationVelodyneScan& a, const CObservationVelo
                         a.scan_packets.size() * sizeof a.scan_packets[0]),
             0);
 }
-
-}  // namespace
 
 /// Turns that MRPT recorded, the first one twice.
 TEST_F(VelodyneReceiverTest, PacketsOfARealVlp16BecomeTheRecordedScans) {
@@ -287,4 +284,5 @@ TEST_F(VelodyneReceiverTest, RefusesWhatCannotBe) {
   expectError(velodyne("pcap_output = drive\n"), {"pcap_output: ", "tcpdump -w"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_velodyne_receiver

@@ -15,11 +15,10 @@
 #include "support/VelodynePackets.h"
 
 namespace polemcl::test_velodyne_points {
+namespace {
 
 using testing_apps::appendBytes;
 using Scan = mrpt::obs::CObservationVelodyneScan;
-
-namespace {
 
 /// Not every MRPT has that of an HDL-64E. No two lasers are alike.
 mrpt::obs::VelodyneCalibration hdl64() {
@@ -70,8 +69,6 @@ std::string randomPacket(std::mt19937& random, int returns, bool isDual) {
   appendBytes(bytes, std::uint32_t{0});
   return bytes + (isDual ? "\x39\x22" : "\x37\x22");
 }
-
-}  // namespace
 
 TEST(VelodynePoints, TheirPacketsTellWhenTheyAreMeasured) {
   std::mt19937 random(3);
@@ -203,4 +200,5 @@ TEST(VelodynePoints, NeedACalibration) {
   EXPECT_REFUSED(read(scan), "a calibration of 0 lasers; allowed are 16, 32 and 64");
 }
 
+}  // namespace
 }  // namespace polemcl::test_velodyne_points

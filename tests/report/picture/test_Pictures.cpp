@@ -15,7 +15,6 @@
 
 namespace polemcl::report::test_pictures {
 namespace {
-
 constexpr unsigned orange = 0xd55e00, grey = 0xaab2bd, blue = 0x0072b2, green = 0x009e73,
                    lightBlue = 0x7aa6cf, navy = 0x0b4a86, noReturn = 0xf3f4f6;
 
@@ -53,8 +52,6 @@ void addPatch(clouds::PointList& points, double x, double y, double z) {
   for (double u = -0.25; u <= 0.25; u += 0.01)
     for (double v = -0.25; v <= 0.25; v += 0.01) points.add(x + u, y + v, z);
 }
-
-}  // namespace
 
 TEST_F(Pictures, AMapShowsPolesTruthAndEstimateWhereTheyAre) {
   MapView view = smallDrive(1);  // the estimate 1 m to the left of the truth
@@ -206,4 +203,5 @@ TEST_F(Pictures, RefuseWhatCannotBeDrawnAndLeaveNoFile) {
   EXPECT_TRUE(std::filesystem::is_empty(file.parent_path()));
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_pictures

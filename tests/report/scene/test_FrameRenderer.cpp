@@ -8,7 +8,6 @@
 
 namespace polemcl::report::test_frame_renderer {
 namespace {
-
 /// Pixels of a part of the picture that are nearer to this colour than to white or grey.
 int count(const mrpt::img::CImage& image, int x0, int y0, int x1, int y1,
           bool (*wanted)(int, int, int)) {
@@ -30,8 +29,6 @@ bool isOrange(int r, int g, int b) {
 bool isPurple(int r, int g, int b) {
   return r > g + 30 && b > g + 50;
 }
-
-}  // namespace
 
 TEST(FrameRenderer, WritesAPictureOfTheSizeWithEverythingInItsColour) {
   const testing_apps::TempFolder folder;
@@ -62,4 +59,5 @@ TEST(FrameRenderer, RefusesAFileThatCannotBeWritten) {
   EXPECT_THROW(renderer.render(*scene.scene(), testing_apps::TempFolder() / "no/a.png"), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_frame_renderer

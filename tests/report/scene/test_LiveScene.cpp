@@ -16,7 +16,6 @@
 
 namespace polemcl::report::test_live_scene {
 namespace {
-
 std::string shareOf(const mrpt::opengl::CRenderizable& object) {
   const auto* text = dynamic_cast<const mrpt::opengl::CText*>(&object);
   return text ? text->getString() : "no text";
@@ -26,8 +25,6 @@ std::string bytesOf(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
-
-}  // namespace
 
 TEST(LiveScene, ShowsTheMapAndWhatWasObservedWhereItStands) {
   LiveScene scene(smallMap(), "drive");
@@ -285,4 +282,5 @@ TEST(LiveMoment, TheWayIsThinnedAndBrokenWhereTheEstimateJumps) {
   EXPECT_EQ(way.points().size(), 16u);
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_live_scene

@@ -13,7 +13,6 @@
 
 namespace polemcl::report::test_map_scene {
 namespace {
-
 MapView movedBy(MapView view, double x, double y) {
   for (MapPole& pole : view.poles) pole.x += x, pole.y += y;
   for (auto* path : {&view.truth, &view.estimate})
@@ -34,8 +33,6 @@ std::size_t trianglesOf(const mrpt::opengl::COpenGLScene::Ptr& scene, const std:
       std::dynamic_pointer_cast<mrpt::opengl::CSetOfTriangles>(scene->getByName(name));
   return triangles ? triangles->getTrianglesCount() : 0;
 }
-
-}  // namespace
 
 TEST(MapScene, PolesAreUprightCylindersFromBottomToTop) {
   const auto cylinders = cylindersOf(makeMapScene(smallDrive()), "poles");
@@ -219,4 +216,5 @@ TEST(DiffScene, RefusesNothing) {
   EXPECT_THROW(makeDiffScene({}), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_map_scene

@@ -9,7 +9,6 @@
 
 namespace polemcl::report::test_player_panels {
 namespace {
-
 constexpr HealthState ok = HealthState::ok, degraded = HealthState::degraded,
                       lost = HealthState::lost;
 
@@ -34,8 +33,6 @@ int facesOf(const viz::Scene::Ptr& scene, const scene::TColor& color) {
   }
   return count;
 }
-
-}  // namespace
 
 TEST(TimeLine, ReachesToTheEndOfTheRunAndHoldsTheWorstOfEachColumn) {
   Playback playback(Playback::Source::rawlog);
@@ -115,4 +112,5 @@ TEST(PlayerPanels, HelpComesAndGoes) {
   EXPECT_EQ(textOf(live.scene(), "help"), "");
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_player_panels

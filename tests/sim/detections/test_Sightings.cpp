@@ -6,10 +6,10 @@
 #include "sim/world/SightLines.h"
 
 namespace polemcl::test_sightings {
+namespace {
 
 using namespace polemcl::sim;
 
-namespace {
 constexpr double kRange = 40;  // m
 
 /// A drive on a flat street; its clouds have their origin at the optical centre.
@@ -50,8 +50,6 @@ class Sightings : public testing::Test {
   std::vector<std::vector<PoleDetection>> poles =
       std::vector<std::vector<PoleDetection>>(drive.scans());
 };
-}  // namespace
-
 TEST_F(Sightings, OfPolesAreAllInRangeFoundOrNot) {
   std::size_t found = 0, inRange = 0, hidden = 0;
   const SightLines sight(drive.world());
@@ -121,4 +119,5 @@ TEST_F(Sightings, ThreeFalseDetectionsAtAPlaceAreClutterOthersPass) {
     EXPECT_FALSE(sighting.reported);
 }
 
+}  // namespace
 }  // namespace polemcl::test_sightings

@@ -12,10 +12,9 @@
 #include "support/Worlds.h"
 
 namespace polemcl::test_world_year {
+namespace {
 
 using namespace polemcl::sim;
-
-namespace {
 
 WorldOptions street(std::uint64_t seed, int day, double length = 400) {
   WorldOptions options = tests::streetOptions(seed, day, length);
@@ -28,8 +27,6 @@ double distance(const BuildingSite& site, double x, double y) {
   for (const auto& place : site.kerb) best = std::min(best, (place - Eigen::Vector2d(x, y)).norm());
   return best;
 }
-
-}  // namespace
 
 TEST(WorldYear, PolesThatGoStayGoneAndThoseThatComeStay) {
   std::map<std::uint32_t, TruePole> before, everGone;
@@ -210,4 +207,5 @@ TEST(WorldYear, PolesComeBackWhenTheWorkIsDone) {
   EXPECT_GT(extra, 2u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_world_year

@@ -4,10 +4,9 @@
 #include "support/Clouds.h"
 
 namespace polemcl::test_pole_candidates {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 /// A thing of `columns` x 6 pixels at 10 m before a wall at 20 m, its rows 0.4 m apart in height.
 struct Scene {
@@ -36,8 +35,6 @@ struct Scene {
                          options, heightOffset, heights);
   }
 };
-
-}  // namespace
 
 TEST(PoleCandidates, ASlimThingBeforeAWallPasses) {
   Scene scene(2.5);
@@ -164,4 +161,5 @@ TEST(PoleCandidates, TheFirstReasonOfSeveralIsGiven) {
   EXPECT_EQ(scene.test(), RejectionReason::tooFewPoints);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_candidates

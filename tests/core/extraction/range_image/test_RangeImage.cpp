@@ -11,10 +11,9 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_range_image {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -67,8 +66,6 @@ std::string refusal(const std::function<void(View&)>& spoil) {
     projectInto(image, PointList(), view);
   });
 }
-
-}  // namespace
 
 TEST(RangeImage, PixelsAsComputedByHand) {
   struct Expected {
@@ -408,4 +405,5 @@ TEST(RangeImage, ProjectRefusesBadOptions) {
   EXPECT_THROW(projectInto(image, PointList(), options), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_range_image

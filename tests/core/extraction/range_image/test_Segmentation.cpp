@@ -9,7 +9,6 @@
 #include "sim/common/Random.h"
 
 namespace polemcl::test_segmentation {
-
 namespace {
 
 /// One string a row; '.' is no return, a digit a range of as many metres.
@@ -123,8 +122,6 @@ void expectLabels(const RangeImage& image, const Segmentation& segmentation,
   }
 }
 
-}  // namespace
-
 TEST(Segmentation, LikeNeighboursMakeOneSegment) {
   EXPECT_EQ(segment({"1122..",  //
                      "1.22.4",  //
@@ -223,4 +220,5 @@ TEST(Segmentation, TakesALargeImageOfOneSegment) {
   EXPECT_EQ(segmentation.segments()[0].height(), 512);
 }
 
+}  // namespace
 }  // namespace polemcl::test_segmentation
