@@ -12,7 +12,11 @@ namespace polemcl::tests {
 /// Feeds a monitor with scans of ten poles, half a metre and a tenth of a second apart.
 class Feed {
  public:
-  Feed() { monitor.begin(); }
+  /// \param count, share Of the first scans.
+  explicit Feed(int count = 0, double share = 1) {
+    monitor.begin();
+    scans(count, share);
+  }
 
   /// \param share Share of the poles that match. \param poles Number of poles in the scan.
   Feed& scan(double share, int poles = 10) {

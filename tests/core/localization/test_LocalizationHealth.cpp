@@ -95,8 +95,7 @@ TEST(LocalizationHealth, FewPolesRaiseDoubtWhereNoneMatches) {
 
 TEST(LocalizationHealth, DoubtIsForgottenAlikeHoweverLongItLasted) {
   for (const int scansOfDoubt : {250, 600}) {
-    Feed feed;
-    feed.scans(20, 1);
+    Feed feed(20, 1);
     feed.confidence = 0.2;  // too little for the shares of windows
     feed.scans(scansOfDoubt, 0, 1).expect(State::degraded, Reason::mismatch);
     feed.scans(45, 1, 1).expect(State::degraded, Reason::mismatch);
@@ -105,16 +104,14 @@ TEST(LocalizationHealth, DoubtIsForgottenAlikeHoweverLongItLasted) {
 }
 
 TEST(LocalizationHealth, LostWithinTheWindowOfMetresAfterAJump) {
-  Feed feed;
-  feed.scans(60, 0.9);
+  Feed feed(60, 0.9);
   double driven = 0;
   while (feed.scan(0).last.state != State::lost && driven < 100) driven += feed.metres;
   EXPECT_LE(driven, 18);
 }
 
 TEST(LocalizationHealth, ChanceMatchesDoNotEndLost) {
-  Feed feed;
-  feed.scans(60, 0.8);
+  Feed feed(60, 0.8);
   feed.scans(60, 0).expect(State::lost, Reason::mismatch);
   feed.scans(60, 0.1).expect(State::lost, Reason::mismatch);
   feed.scans(60, 0.2).expect(State::degraded, Reason::mismatch);
@@ -148,8 +145,7 @@ TEST(LocalizationHealth, ScansFarApartWithFewPolesAreJudged) {
 }
 
 TEST(LocalizationHealth, AShortStretchWithoutMappedPolesDegradesOnly) {
-  Feed feed;
-  feed.scans(60, 0.9);
+  Feed feed(60, 0.9);
   for (int i = 0; i < 20; ++i) {  // 10 m, longer than the window of 8 m
     feed.scan(0);
     EXPECT_NE(feed.last.state, State::lost) << i;
@@ -227,8 +223,7 @@ TEST(LocalizationHealth, ManyPolesOfWhichNoneMatchesAreNeverOk) {
 }
 
 TEST(LocalizationHealth, WhatIsUsualOutlivesBlindStretchesAndSearches) {
-  Feed feed;
-  feed.scans(60, 1);
+  Feed feed(60, 1);
   feed.scans(800, 0, 0);  // 400 m
   feed.confidence = 0.1;
   feed.scans(60, 0).expect(State::degraded, Reason::mismatch);
@@ -237,15 +232,13 @@ TEST(LocalizationHealth, WhatIsUsualOutlivesBlindStretchesAndSearches) {
 }
 
 TEST(LocalizationHealth, FewPolesSayNothingAgainstThePose) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.scans(17, 0, 0);  // the window of 8 m is empty
   feed.scan(0, 1).expect(State::ok, Reason::none);
 }
 
 TEST(LocalizationHealth, ScansFromOneViewpointCountAsOne) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.metres = 0;
   feed.scan(0.0);
   EXPECT_NEAR(feed.last.innovation, 1, 1e-12);  // means of m² and of matches alike
@@ -257,8 +250,7 @@ TEST(LocalizationHealth, ScansFromOneViewpointCountAsOne) {
 }
 
 TEST(LocalizationHealth, SpreadDegradesThenLoses) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.sigma = 0.8;
   feed.scan(0.9).expect(State::degraded, Reason::spread);
   EXPECT_NEAR(feed.last.spread, 0.8, 1e-12);
@@ -270,21 +262,18 @@ TEST(LocalizationHealth, SpreadDegradesThenLoses) {
 }
 
 TEST(LocalizationHealth, SeveralPlacesAreAmbiguousNotLost) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.modeShare = 0.6;
   feed.sigma = 60;
   feed.scan(0.9).expect(State::degraded, Reason::ambiguous);
 }
 
 TEST(LocalizationHealth, BlindByTimeOrByMetres) {
-  Feed standing;
-  standing.scans(40, 0.9);
+  Feed standing(40, 0.9);
   standing.metres = 0;
   standing.scans(19, 0, 0).expect(State::ok, Reason::none);
   standing.scans(3, 0, 0).expect(State::degraded, Reason::noPoles);  // 2.2 s
-  Feed fast;
-  fast.scans(40, 0.9);
+  Feed fast(40, 0.9);
   fast.metres = 3;
   fast.scans(7, 0, 0).expect(State::degraded, Reason::noPoles);  // 0.7 s, 21 m
   fast.metres = 0.5;
@@ -292,8 +281,7 @@ TEST(LocalizationHealth, BlindByTimeOrByMetres) {
 }
 
 TEST(LocalizationHealth, PolesWithoutConfidenceAreNotSeen) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.confidence = 0;
   feed.scans(25, 1).expect(State::degraded, Reason::noPoles);
 }
@@ -305,8 +293,7 @@ TEST(LocalizationHealth, FewMatchesBearNoPoseOut) {
 }
 
 TEST(LocalizationHealth, ATimeGapIsNamedUntilMatchesOverMetres) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.time += 120;
   feed.scan(0.9).expect(State::degraded, Reason::timeGap);
   feed.scans(11, 0.9).expect(State::ok, Reason::none);
@@ -316,8 +303,7 @@ TEST(LocalizationHealth, ATimeGapIsNamedUntilMatchesOverMetres) {
 }
 
 TEST(LocalizationHealth, OdometryAndInnovationDegrade) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.contradicted = true;
   feed.scan(0.9).expect(State::degraded, Reason::odometry);
   feed.contradicted = false;
@@ -337,8 +323,7 @@ TEST(LocalizationHealth, PolesThatFitAnotherPoseTogetherDegrade) {
 }
 
 TEST(LocalizationHealth, PolesThatFitAnotherPoseAreForgottenOverMetres) {
-  Feed feed;
-  feed.scans(20, 0.6);
+  Feed feed(20, 0.6);
   feed.rival = {{0.4, 0, 0}, {1, 2, 3, 4, 5}};
   feed.scans(20, 0.6);  // up to 2, which is the most
   feed.rival = {};
@@ -352,8 +337,7 @@ TEST(LocalizationHealth, PolesThatFitAnotherPoseAreForgottenOverMetres) {
 }
 
 TEST(LocalizationHealth, TwoPolesThatFitAnotherPoseSayNothingHoweverOftenTheyAreSeen) {
-  Feed feed;
-  feed.scans(20, 0.6);
+  Feed feed(20, 0.6);
   feed.rival = {{0.4, 0, 0}, {1, 2}};
   for (int i = 0; i < 60; ++i) {
     feed.scan(0.6);
@@ -364,8 +348,7 @@ TEST(LocalizationHealth, TwoPolesThatFitAnotherPoseSayNothingHoweverOftenTheyAre
 TEST(LocalizationHealth, PolesThatFitTheSameOtherPoseAddUp) {
   for (const auto& [x, yaw, state] :
        {std::tuple{0.5, 0.01, State::degraded}, {0.7, 0.0, State::ok}, {0.4, 0.03, State::ok}}) {
-    Feed feed;
-    feed.scans(20, 0.6);
+    Feed feed(20, 0.6);
     feed.rival = {{0.4, 0, 0}, {1, 2}};
     feed.scans(2, 0.6);
     for (std::size_t i = 0; i < 4; ++i) {  // 1, 2, 3, 4 beyond two: 10 * 0.5 m / 3 m
@@ -377,8 +360,7 @@ TEST(LocalizationHealth, PolesThatFitTheSameOtherPoseAddUp) {
 }
 
 TEST(LocalizationHealth, PolesThatFittedAnotherPoseLongAgoDoNotAddUp) {
-  Feed feed;
-  feed.scans(20, 0.6);
+  Feed feed(20, 0.6);
   for (std::size_t i = 0; i < 20; ++i) {
     feed.rival = {{0.4, 0, 0}, {2 * i, 2 * i + 1}};
     feed.scan(0.6);
@@ -397,8 +379,7 @@ TEST(LocalizationHealth, ANewPoseIsNotHeldByWhatWasBeforeItWasKnown) {
 }
 
 TEST(LocalizationHealth, ElsewhereIsLostAndANewPoseMustProveItself) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.monitor.reportElsewhere();
   EXPECT_EQ(feed.monitor.health().state, State::lost);
   EXPECT_EQ(feed.monitor.health().reason, Reason::elsewhere);
@@ -407,8 +388,7 @@ TEST(LocalizationHealth, ElsewhereIsLostAndANewPoseMustProveItself) {
 }
 
 TEST(HealthMonitor, AVehicleThatIsMovedAtRestIsNoticed) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.metres = 0;
   for (int i = 0; i < 600; ++i) ASSERT_EQ(feed.scan(0.5).last.state, State::ok) << i;
   feed.scans(50, 0.1).expect(State::degraded, Reason::mismatch);
