@@ -116,12 +116,12 @@ TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
   writeSimulated(folder / "in", "hdl32e", 1.0);
   import("in");
   const Outcome outcome = succeeded(inspectInput({"--write-config", at("found.ini")}));
-  EXPECT_TRUE(has(outcome.out, "beams             32")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "fits              model = hdl32e")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "tilt")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "config/hdl32e.ini has settings chosen")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "no odometry between all scans; --truth S.tum")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "`pole-map build --trajectory`, which cannot show")) << outcome.out;
+  EXPECT_HAS(outcome.out, "beams             32");
+  EXPECT_HAS(outcome.out, "fits              model = hdl32e");
+  EXPECT_HAS(outcome.out, "tilt");
+  EXPECT_HAS(outcome.out, "config/hdl32e.ini has settings chosen");
+  EXPECT_HAS(outcome.out, "no odometry between all scans; --truth S.tum");
+  EXPECT_HAS(outcome.out, "`pole-map build --trajectory`, which cannot show");
   EXPECT_FALSE(has(outcome.out, "Unless the scans were corrected")) << outcome.out;
   const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.model, "hdl32e");
@@ -137,8 +137,8 @@ TEST_F(InspectApp, WritesATableOfTwoBlocks) {
   writeSimulated(folder / "in", "hdl64e", 1.73);
   import("in");
   const Outcome outcome = succeeded(inspectInput({"--write-config", at("found.ini")}));
-  EXPECT_TRUE(has(outcome.out, "block of 32 starting")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "no preset")) << outcome.out;
+  EXPECT_HAS(outcome.out, "block of 32 starting");
+  EXPECT_HAS(outcome.out, "no preset");
   const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.elevations.size(), 32u);
   EXPECT_EQ(settings.sensor.lowerElevations.size(), 32u);
@@ -161,8 +161,8 @@ TEST_F(InspectApp, SaysWhenCloudsStandOnTheirHead) {
   writeSimulated(folder / "in", "hdl32e", 1.0, true);
   import("in");
   const Outcome outcome = succeeded(inspectInput());
-  EXPECT_TRUE(has(outcome.out, "--sensor-pose whose roll is 180 deg")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "not looked for in clouds that are upside down")) << outcome.out;
+  EXPECT_HAS(outcome.out, "--sensor-pose whose roll is 180 deg");
+  EXPECT_HAS(outcome.out, "not looked for in clouds that are upside down");
 }
 
 TEST_F(InspectApp, RefusesPolesAndEmptyRawlogs) {
@@ -173,14 +173,14 @@ TEST_F(InspectApp, RefusesPolesAndEmptyRawlogs) {
       0);
   const auto poles = run({"--inspect", at("poles.rawlog"), "--write-config", at("none.ini")});
   EXPECT_EQ(poles.code, 1);
-  EXPECT_TRUE(has(poles.err, "holds poles")) << poles.err;
+  EXPECT_HAS(poles.err, "holds poles");
   EXPECT_FALSE(fs::exists(folder / "none.ini"));
   EXPECT_EQ(run({"--inspect", at("missing.rawlog")}).code, 1);
 }
 
 TEST_F(InspectApp, UsageNamesWhatIsMissing) {
   EXPECT_EQ(run({}).code, 2);
-  EXPECT_TRUE(has(run({"--config", "a", "--input", "b"}).err, "--output"));
+  EXPECT_HAS(run({"--config", "a", "--input", "b"}).err, "--output");
   EXPECT_EQ(run({"--write-config", "a.ini"}).code, 2);
   EXPECT_EQ(run({"--inspect", "a", "--input", "b"}).code, 2);
 }
@@ -192,9 +192,8 @@ TEST_F(InspectApp, AWrongModelIsRefused) {
   const auto outcome =
       run({"--config", config(), "--input", at("in.rawlog"), "--output", at("poles.rawlog")});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_TRUE(has(outcome.err, "scan 0: the cloud contradicts [sensor] model = hdl32e"))
-      << outcome.err;
-  EXPECT_TRUE(has(outcome.err, "as model = vlp16 has")) << outcome.err;
+  EXPECT_HAS(outcome.err, "scan 0: the cloud contradicts [sensor] model = hdl32e");
+  EXPECT_HAS(outcome.err, "as model = vlp16 has");
   EXPECT_FALSE(fs::exists(folder / "poles.rawlog"));
   writeText(folder / "forced.ini", "[sensor]\nmodel = hdl32e\ncheck_beams = false\n");
   EXPECT_EQ(run({"--config", at("forced.ini"), "--input", at("in.rawlog"), "--output",
@@ -232,15 +231,13 @@ TEST_F(InspectApp, FindsACutThatMovesAndRangesThatAreOff) {
   EXPECT_EQ(found.timing->timing.turn, Turn::clockwise);
   EXPECT_TRUE(found.timing->timing.movingCut);
   EXPECT_LT(found.timing->after, 0.5 * found.timing->before);
-  EXPECT_TRUE(has(readText(folder / "found.ini"), "moving_cut = true"));
-  std::ostringstream text;
-  printInspection(text, found);
-  EXPECT_TRUE(has(text.str(), "each scan cut at its first point (these lie ")) << text.str();
+  EXPECT_HAS(readText(folder / "found.ini"), "moving_cut = true");
+  EXPECT_HAS(printed(found), "each scan cut at its first point (these lie ");
   ASSERT_TRUE(found.ranges);
   EXPECT_NEAR(found.ranges->offset, 0.1, 0.02);
   EXPECT_NEAR(found.ranges->scale, 0.995, 0.0015);
   EXPECT_GT(found.ranges->significance, 4);
-  EXPECT_TRUE(has(text.str(), "\nranges of poles   range_offset_m = 0.")) << text.str();
+  EXPECT_HAS(printed(found), "\nranges of poles   range_offset_m = 0.");
   const SensorOptions written = loadSettings((folder / "found.ini").string()).sensor;
   EXPECT_NEAR(written.rangeOffset, found.ranges->offset, 0.0005);
   EXPECT_NEAR(written.rangeScale, found.ranges->scale, 0.00005);
@@ -254,14 +251,14 @@ TEST_F(InspectApp, TheOrderOfThePointsTellsRawScans) {
   files.input = folder / "in.rawlog";
   Inspection found = inspect(files);
   EXPECT_FALSE(found.timing);
-  EXPECT_TRUE(has(printed(found), "in the order of measuring, clockwise")) << printed(found);
-  EXPECT_TRUE(has(printed(found), advice)) << printed(found);
+  EXPECT_HAS(printed(found), "in the order of measuring, clockwise");
+  EXPECT_HAS(printed(found), advice);
   found.timing.emplace();
   EXPECT_TRUE(has(printed(found), advice)) << "no pole was seen twice";
   found.timing->timing.turn = Turn::compensated;
   found.timing->pairs = 100;
-  EXPECT_TRUE(has(printed(found), "poses found from raw scans hide it")) << printed(found);
-  EXPECT_TRUE(has(printed(found), advice)) << printed(found);
+  EXPECT_HAS(printed(found), "poses found from raw scans hide it");
+  EXPECT_HAS(printed(found), advice);
   Inspection slid = found;
   slid.sensor.sensor.beams.origin.slide = 1;
   EXPECT_FALSE(has(printed(slid), advice)) << "corrected for motion";
@@ -298,13 +295,12 @@ TEST_F(InspectApp, PrintsATurnThatIsNotSure) {
   found.timing->candidate = {Turn::clockwise, 0.1, M_PI};
   found.timing->withCandidate = 0.0533;
   const std::string advice = "set turn = clockwise, cut_deg = 180\n";
-  EXPECT_TRUE(has(printed(found),
-                  "with turn = clockwise, cut_deg = 180, a pole moves by 0.0533 m,\n"
-                  "                  2.4 standard errors better"))
-      << printed(found);
-  EXPECT_TRUE(has(printed(found), advice)) << printed(found);
+  EXPECT_HAS(printed(found),
+             "with turn = clockwise, cut_deg = 180, a pole moves by 0.0533 m,\n"
+             "                  2.4 standard errors better");
+  EXPECT_HAS(printed(found), advice);
   found.timing->turnSignificance = 1.9;
-  EXPECT_TRUE(has(printed(found), "1.9 standard errors better (")) << printed(found);
+  EXPECT_HAS(printed(found), "1.9 standard errors better (");
   EXPECT_FALSE(has(printed(found), advice)) << printed(found);
   found.timing->turnSignificance = 3.9;
   found.timing->withCandidate = 0.12;  // poses or clock are off
@@ -353,16 +349,14 @@ TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
   ASSERT_TRUE(found.ranges);
   EXPECT_NEAR(found.ranges->offset, 0.055, 0.025);  // as in config/kitti.ini
   EXPECT_EQ(timing->timing.clock, 0);
-  EXPECT_NE(readText(folder / "found.ini").find("turn = clockwise"), std::string::npos);
+  EXPECT_HAS(readText(folder / "found.ini"), "turn = clockwise");
 
   options.timing = {Turn::clockwise, 0.1, M_PI, 0.5};  // now the rawlog states it
   importDataset(options);
   const Inspection stated = inspect(files);
   ASSERT_TRUE(stated.timing);
   EXPECT_TRUE(stated.timing->isStated);
-  std::ostringstream text;
-  printInspection(text, stated);
-  EXPECT_TRUE(has(text.str(), "as the rawlog states it: clockwise, cut at 180 deg")) << text.str();
+  EXPECT_HAS(printed(stated), "as the rawlog states it: clockwise, cut at 180 deg");
   const SensorOptions written = loadSettings((folder / "found.ini").string()).sensor;
   EXPECT_EQ(written.timing.turn, Turn::automatic);
   EXPECT_EQ(written.timing.clock, 0);

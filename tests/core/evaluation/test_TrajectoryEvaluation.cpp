@@ -208,21 +208,18 @@ TEST(Evaluation, RefusesWhenLessThanHalfCanBeCompared) {
                Error);
 }
 
-TEST(Evaluation, RefusesEmptyTrajectories) {
-  EXPECT_THROW(evaluateTrajectory({}, {{0, {}}}, Sampling::perPose), Error);
-  EXPECT_THROW(evaluateTrajectory({{0, {}}}, {}, Sampling::perPose), Error);
-}
-
-TEST(Evaluation, RefusesTimesThatDoNotIncrease) {
-  const auto truth = straightTruth(3);
-  EXPECT_THROW(evaluateTrajectory(truth, {{1, {}}, {1, {}}}, Sampling::perPose), Error);
-  EXPECT_THROW(evaluateTrajectory({{2, {}}, {1, {}}}, {{1, {}}}, Sampling::perPose), Error);
-}
-
-TEST(Evaluation, RefusesNumbersThatAreNotFinite) {
+TEST(Evaluation, RefusesTrajectoriesThatAreNone) {
+  using Trajectory = std::vector<StampedPose2D>;
   const double nan = std::nan("");
-  EXPECT_THROW(evaluateTrajectory(straightTruth(3), {{1, {0, nan, 0}}}, Sampling::perPose), Error);
-  EXPECT_THROW(evaluateTrajectory({{nan, {}}}, {{1, {}}}, Sampling::perPose), Error);
+  const Trajectory truth = straightTruth(3), one{{1, {}}}, twice{{1, {}}, {1, {}}},
+                   back{{2, {}}, {1, {}}}, wrong{{1, {0, nan, 0}}}, timeless{{nan, {}}};
+  for (const auto& [a, b] : {std::pair{Trajectory(), one},
+                             {truth, {}},
+                             {truth, twice},
+                             {back, one},
+                             {truth, wrong},
+                             {timeless, one}})
+    EXPECT_THROW(evaluateTrajectory(a, b, Sampling::perPose), Error) << a.size() << ' ' << b.size();
 }
 
 TEST(Evaluation, MapScoreByHand) {
@@ -276,21 +273,13 @@ TEST(Evaluation, MapScoreEqualsTryingEveryPair) {
   }
 }
 
-TEST(Evaluation, MapScoreRefusesEmptyMaps) {
-  EXPECT_THROW(scoreMap({}, {{0, 0}}, 1, false), Error);
-  EXPECT_THROW(scoreMap({{0, 0}}, {}, 1, true), Error);
-}
-
-TEST(Evaluation, MapScoreRefusesARadiusThatIsNotPositive) {
-  for (double radius : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(scoreMap({{0, 0}}, {{0, 0}}, radius, false), Error);
-  }
-}
-
-TEST(Evaluation, MapScoreRefusesPolesThatAreNotFinite) {
-  const Eigen::Vector2d bad(std::nan(""), 0);
-  EXPECT_THROW(scoreMap({bad}, {{0, 0}}, 1, false), Error);
-  EXPECT_THROW(scoreMap({{0, 0}}, {bad}, 1, false), Error);
+TEST(Evaluation, MapScoreRefusesWhatCannotBeScored) {
+  const Points one{{0, 0}}, bad{{std::nan(""), 0}};
+  for (const bool oneToOne : {false, true})
+    for (const auto& [truth, map] : {std::pair{Points(), one}, {one, {}}, {bad, one}, {one, bad}})
+      EXPECT_THROW(scoreMap(truth, map, 1, oneToOne), Error);
+  for (double radius : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_THROW(scoreMap(one, one, radius, false), Error) << radius;
 }
 
 }  // namespace

@@ -5,16 +5,10 @@
 #include <mrpt/obs/CRawlog.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/serialization/CArchive.h>
-#include <sys/resource.h>
-
-#include <csignal>
-#include <filesystem>
-#include <fstream>
 
 #include "mrpt/rawlog/RawlogReader.h"
 #include "mrpt/rawlog/RawlogWriter.h"
-#include "support/ExpectHas.h"
-#include "support/Refusal.h"
+#include "support/IoFiles.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_rawlog_writer {
@@ -116,8 +110,7 @@ TEST(RawlogWriter, SameBytesEachTime) {
     writer.write(move(CActionRobotMovement2D::emScan2DMatching),
                  std::make_shared<CObservationPoles>(samples::observation()));
     writer.commit();
-    std::ifstream in(folder / name, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    const std::string bytes = testing_apps::readText(folder / name);
     if (first.empty()) first = bytes;
     EXPECT_EQ(bytes, first);
   }
@@ -130,19 +123,13 @@ TEST(RawlogWriter, RefusesAFolderThatIsNotThere) {
 // A limit on file sizes simulates a full disk: writes fail in the middle of the file.
 TEST(RawlogWriter, ReportsAFullDisk) {
   const testing_apps::TempFolder folder;
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit small{20000, before.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
   int written = 0;
   const std::string error = tests::messageOf([&] {
+    const io::test::FileSizeLimit limit(20000);
     RawlogWriter writer(folder / "s.rawlog");
     for (; written < 1000; ++written) writer.write(samples::observation());
     writer.commit();
   });
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
   EXPECT_HAS(error, "s.rawlog");
   EXPECT_LT(written, 1000);  // noticed before the end
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
