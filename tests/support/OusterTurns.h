@@ -39,10 +39,7 @@ inline std::uint32_t ousterRange(const std::vector<StreetPole>& poles, double x,
                cosine = std::cos(OusterModel::elevation(ring) * degree);
   const double fromX = x + OusterModel::origin * std::cos(yaw + encoder),
                fromY = y + OusterModel::origin * std::sin(yaw + encoder);
-  const double ground = slope < 0 ? streetSensorHeight / -slope : 1e9;
-  const double pole = rangeToPoles(poles, fromX, fromY, azimuth);
-  const bool hitsPole = pole < ground && streetSensorHeight + pole * slope < streetPoleTop;
-  const double level = hitsPole ? pole : ground;
+  const double level = rangeOfRay(rangeToPoles(poles, fromX, fromY, azimuth), slope);
   return level < 60 ? static_cast<std::uint32_t>(
                           std::lround((level / cosine + OusterModel::origin) * 1000))
                     : 0;

@@ -15,12 +15,7 @@ namespace polemcl::samples {
 
 /// \brief A detection with different values in all fields, to detect mix-ups.
 inline PoleDetection pole(double x, double y) {
-  PoleDetection p = tests::detectionAt(x, y);
-  p.radius = 0.125;
-  p.bottom = 0.25;
-  p.top = 3.5;
-  p.confidence = 0.75;
-  p.covariance << 0.04, 0.01, 0.01, 0.09;
+  PoleDetection p = tests::varied(tests::detectionAt(x, y));
   p.points = 42;
   return p;
 }

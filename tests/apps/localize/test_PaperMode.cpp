@@ -186,6 +186,19 @@ class PaperModeOnKitti : public testing::Test {
                        "filter.particles=1000", "start.particles=1000"});
   }
 
+  void expectParity(const std::vector<std::vector<PoleDetection>>& poles) const {
+    ASSERT_EQ(poles.size(), 80u);
+    const AllSettings settings = protocol("paper/kitti.ini");
+    const Parity old(poses("poses_scan_matching.txt"), poles, settings);
+    EXPECT_LE(old.run(0.5, 20).mean, 0.038);
+    const auto wide = old.run(2.5, 20);
+    EXPECT_LE(wide.mean, 0.075);
+    EXPECT_LE(wide.most, 0.143);
+    const Parity now(poses("poses.txt"), poles, settings);
+    EXPECT_LE(now.run(0.5, 20).mean, 0.036);
+    EXPECT_LE(now.run(2.5, 20).mean, 0.070);
+  }
+
   fs::path m_data;
 };
 
@@ -228,30 +241,11 @@ TEST(PaperMode, AKidnappedVehicleStaysLost) {
 // from 2.5 m and 0.032 m (0.021 to 0.047) from 0.5 m with poses_scan_matching.txt, 0.049 m and
 // 0.030 m with poses.txt.
 TEST_F(PaperModeOnKitti, LocalizesAsTheFirstImplementationOnItsPoles) {
-  const AllSettings settings = protocol("paper/kitti.ini");
-  const auto theirs = theirPoles();
-  const Parity old(poses("poses_scan_matching.txt"), theirs, settings);
-  EXPECT_LE(old.run(0.5, 20).mean, 0.038);
-  const auto wide = old.run(2.5, 20);
-  EXPECT_LE(wide.mean, 0.075);
-  EXPECT_LE(wide.most, 0.143);
-  const Parity now(poses("poses.txt"), theirs, settings);
-  EXPECT_LE(now.run(0.5, 20).mean, 0.036);
-  EXPECT_LE(now.run(2.5, 20).mean, 0.070);
+  expectParity(theirPoles());
 }
 
 TEST_F(PaperModeOnKitti, LocalizesAsTheFirstImplementationOnItsOwnPoles) {
-  const AllSettings settings = protocol("paper/kitti.ini");
-  const auto ours = ourPoles(settings);
-  ASSERT_EQ(ours.size(), 80u);
-  const Parity old(poses("poses_scan_matching.txt"), ours, settings);
-  EXPECT_LE(old.run(0.5, 20).mean, 0.038);
-  const auto wide = old.run(2.5, 20);
-  EXPECT_LE(wide.mean, 0.075);
-  EXPECT_LE(wide.most, 0.143);
-  const Parity now(poses("poses.txt"), ours, settings);
-  EXPECT_LE(now.run(0.5, 20).mean, 0.036);
-  EXPECT_LE(now.run(2.5, 20).mean, 0.070);
+  expectParity(ourPoles(protocol("paper/kitti.ini")));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "mrpt/rawlog/PoleSequence.h"
 #include "simulate/SimulateApp.h"
 #include "support/DiskCalls.h"
+#include "support/Poles.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_simulated_poles {
@@ -33,15 +34,8 @@ class SimulatedPoles : public testing::Test {
   TempFolder folder;
 };
 
-void expectSame(const PoleDetection& a, const PoleDetection& b) {
-  EXPECT_EQ(a.x, b.x);
-  EXPECT_EQ(a.y, b.y);
-  EXPECT_EQ(a.radius, b.radius);
-  EXPECT_EQ(a.top, b.top);
-  EXPECT_EQ(a.confidence, b.confidence);
-  EXPECT_EQ(a.points, b.points);
-  EXPECT_EQ(a.covariance, b.covariance);
-}
+using tests::expectSame;
+
 TEST_F(SimulatedPoles, AreThoseOfSimulatingImportingAndExtracting) {
   configure("scans = 5\n");
   ASSERT_EQ(run("streamed.rawlog", {"--output", at("scans")}).code, 0);

@@ -13,6 +13,8 @@
 namespace polemcl::test_map_accumulator {
 namespace {
 
+using tests::expectSame;
+
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A scan at (x, y) that sees the poles within 12 m, without error.
@@ -63,16 +65,6 @@ MapAccumulator fresh(double unvisited) {
 
 std::vector<bool> chosen(MapAccumulator& map, const std::vector<SessionScan>& scans) {
   return map.add("s", scans).used;
-}
-
-void expectSame(const std::vector<MapPole>& a, const std::vector<MapPole>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].x, b[i].x);
-    EXPECT_EQ(a[i].y, b[i].y);
-    EXPECT_EQ(a[i].count, b[i].count);
-    EXPECT_EQ(a[i].covariance, b[i].covariance);
-  }
 }
 
 TEST(MapAccumulator, UsesEverythingUnlessAsked) {

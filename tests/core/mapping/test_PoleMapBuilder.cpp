@@ -343,14 +343,7 @@ TEST(PoleMapBuilder, TheOrderOfDetectionsInAScanIsOfNoConsequence) {
   std::mt19937_64 random(3);
   for (MappingScan& scan : street.scans)
     std::shuffle(scan.poles_robot.begin(), scan.poles_robot.end(), random);
-  const PoleMapResult result = buildPoleMap(street.scans, {});
-  ASSERT_EQ(result.poles.size(), expected.poles.size());
-  for (std::size_t i = 0; i < result.poles.size(); ++i) {
-    EXPECT_EQ(result.poles[i].x, expected.poles[i].x);
-    EXPECT_EQ(result.poles[i].y, expected.poles[i].y);
-    EXPECT_EQ(result.poles[i].covariance, expected.poles[i].covariance);
-    EXPECT_EQ(result.poles[i].count, expected.poles[i].count);
-  }
+  expectSame(buildPoleMap(street.scans, {}).poles, expected.poles);
 }
 
 TEST(PoleMapBuilder, NoScansNoMap) {

@@ -374,7 +374,7 @@ TEST_F(PoleLocalizationFaults, AStartFarFromAllPolesIsRefused) {
   StartOptions start;
   start.pose = Pose2D{9000, 0, 0};
   start.radius = 100;
-  EXPECT_THROW(localization.start(start), Error);
+  EXPECT_REFUSED(localization.start(start), "from the nearest pole");
   start.radius = 9000;  // reaches the poles
   localization.start(start);
 }
