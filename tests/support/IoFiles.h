@@ -107,16 +107,6 @@ inline std::string doubles(std::initializer_list<double> values) {
   return bytes;
 }
 
-/// The folder of real data, or empty.
-inline fs::path dataFolder() {
-  const char* folder = std::getenv("POLEMCL_DATA");
-  return folder == nullptr ? fs::path() : fs::path(folder);
-}
+using testing_apps::dataFolder;
 
 }  // namespace polemcl::io::test
-
-/// Skips the test when there is no real data.
-#define POLEMCL_NEEDS_DATA()                                                  \
-  if (polemcl::io::test::dataFolder().empty()) {                              \
-    GTEST_SKIP() << "POLEMCL_DATA is not set: real scans and published maps"; \
-  }

@@ -37,6 +37,11 @@ class StreetTest : public testing::Test {
     polemcl::apps::importDataset(options);
   }
 
+  void importStreet(const std::string& name, std::size_t scans) {
+    writeStreet(folder / name, scans);
+    import(name);
+  }
+
   /// `pole-map build` of `in.rawlog` at its true poses: `map.polemap`.
   void buildAtTruth() const {
     const Outcome built = succeeded(runProgram(

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -62,6 +63,12 @@ inline std::vector<std::string> names(const fs::path& folder) {
   return result;
 }
 
+/// The folder of real data, or empty.
+inline fs::path dataFolder() {
+  const char* folder = std::getenv("POLEMCL_DATA");
+  return folder == nullptr ? fs::path() : fs::path(folder);
+}
+
 struct Outcome {
   int code = -1;
   std::string out, err;
@@ -102,3 +109,9 @@ inline void expectUsageError(const Outcome& outcome) {
 }
 
 }  // namespace testing_apps
+
+/// Skips the test when there is no real data.
+#define POLEMCL_NEEDS_DATA()                                                  \
+  if (testing_apps::dataFolder().empty()) {                                   \
+    GTEST_SKIP() << "POLEMCL_DATA is not set: real scans and published maps"; \
+  }

@@ -74,9 +74,8 @@ TEST_F(EvalApp, ScoresAMapOneToOneWithinARadius) {
 }
 
 TEST_F(EvalApp, PrintsThePublishedScores) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
-  const auto published = fs::path(data) / "published";
+  POLEMCL_NEEDS_DATA();
+  const auto published = dataFolder() / "published";
   Arguments arguments{"map", "--truth", (published / "nclt_truth.npz").string(), "--map",
                       (published / "nclt_map_8_0.50_0.08.npz").string()};
   const auto outcome = run(arguments);

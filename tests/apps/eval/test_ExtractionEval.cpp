@@ -107,8 +107,7 @@ TEST_F(ExtractionEval, RefusesScansThatDoNotBelongToThePoles) {
 }
 
 TEST_F(ExtractionEval, PolesOfAStreetAreFoundAgain) {
-  writeStreet(folder / "street", 9);
-  import("street");
+  importStreet("street", 9);
   ExtractOptions options;
   options.input = folder / "street.rawlog";
   options.output = folder / "poles.rawlog";
@@ -147,8 +146,7 @@ TEST_F(ExtractionEval, RepeatabilityRefusesWhatCannotBeCompared) {
   writeAlike("p.rawlog", {1, 2, 3, 4, 5}, {});
   writeWay("short.tum", 5);
   writeWay("t.tum", 6);
-  writeStreet(folder / "street", 2);
-  import("street");
+  importStreet("street", 2);
   expectRefusals({
       {repeatability("p.rawlog", "short.tum"), {at("short.tum"), "5.000000 s", "scan 4"}},
       {repeatability("p.rawlog", "t.tum"), {at("p.rawlog"), "5 scans"}},

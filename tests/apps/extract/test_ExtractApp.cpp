@@ -53,8 +53,7 @@ class ExtractApp : public StreetTest {
 };
 
 TEST_F(ExtractApp, FindsThePolesOfEveryScan) {
-  writeStreet(folder / "in", 4);
-  import("in");
+  importStreet("in", 4);
   const Outcome outcome = succeeded(run({"--csv", at("poles.csv")}));
   EXPECT_NE(outcome.out.find("in 4 scans"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("candidates: "), std::string::npos) << outcome.out;
@@ -76,8 +75,7 @@ TEST_F(ExtractApp, FindsThePolesOfEveryScan) {
 }
 
 TEST_F(ExtractApp, SaysWhenNoScanHasAPole) {
-  writeStreet(folder / "in", 2);
-  import("in");
+  importStreet("in", 2);
   EXPECT_EQ(run().err.find("warning"), std::string::npos);
   const Outcome outcome = succeeded(run({"--quiet", "--set", "scan_line.min_height_m=50"}));
   EXPECT_EQ(outcome.err, "pole-extract: warning: " + at("in.rawlog") +
@@ -85,8 +83,7 @@ TEST_F(ExtractApp, SaysWhenNoScanHasAPole) {
 }
 
 TEST_F(ExtractApp, TheRangeImageMethodFitsTheSensorByItself) {
-  writeStreet(folder / "in", 4);
-  import("in");
+  importStreet("in", 4);
   const Outcome outcome =
       succeeded(run({"--csv", at("poles.csv"), "--set", "extraction.method=range_image"}));
   // Rows and borders of another LiDAR find nothing in these scans.
@@ -98,8 +95,7 @@ TEST_F(ExtractApp, TheRangeImageMethodFitsTheSensorByItself) {
 }
 
 TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
-  writeStreet(folder / "in", 2);
-  import("in");
+  importStreet("in", 2);
   const std::vector<std::string> arguments{"--config",      config(),       "--input",
                                            at("in.rawlog"), "--output",     at("poles.rawlog"),
                                            "--png",         at("scan.png"), "--png-scan"};
@@ -117,8 +113,7 @@ TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
 }
 
 TEST_F(ExtractApp, PictureAndTableAppearWithTheRawlog) {
-  writeStreet(folder / "in", 2);
-  import("in");
+  importStreet("in", 2);
   const testing_disk::DiskCalls calls;
   ASSERT_EQ(run({"--csv", at("poles.csv"), "--png", at("scan.png")}).code, 0);
   EXPECT_EQ(calls.of("rename"),
@@ -127,8 +122,7 @@ TEST_F(ExtractApp, PictureAndTableAppearWithTheRawlog) {
 }
 
 TEST_F(ExtractApp, DrawsTheStepsOfTheRangeImageMethodOnly) {
-  writeStreet(folder / "in", 1);
-  import("in");
+  importStreet("in", 1);
   const std::vector<std::string> arguments{"--config",      config(),       "--input",
                                            at("in.rawlog"), "--output",     at("poles.rawlog"),
                                            "--range-image", at("range.png")};
@@ -250,8 +244,7 @@ TEST_F(ExtractApp, RefusesMissingFiles) {
 }
 
 TEST_F(ExtractApp, RefusesATruncatedRawlogUnlessAllowed) {
-  writeStreet(folder / "in", 3);
-  import("in");
+  importStreet("in", 3);
   fs::resize_file(folder / "in.rawlog", fs::file_size(folder / "in.rawlog") - 1000);
   writeText(folder / "poles.rawlog", "old");
   expectFailure(run(), {"in.rawlog"});
@@ -265,8 +258,7 @@ TEST_F(ExtractApp, RefusesATruncatedRawlogUnlessAllowed) {
 }
 
 TEST_F(ExtractApp, RefusesUnknownClasses) {
-  writeStreet(folder / "in", 2);
-  import("in");
+  importStreet("in", 2);
   replace("in.rawlog", "CObservationPointCloud", "CObservationPointClown");
   expectFailure(run(), {"in.rawlog", "CObservationPointClown"});
   EXPECT_EQ(names(folder.path()), std::vector<std::string>({"in", "in.rawlog", "in.tum"}));
@@ -282,8 +274,7 @@ TEST_F(ExtractApp, RefusesATruncatedExternalCloud) {
 }
 
 TEST_F(ExtractApp, RefusesToReplaceItsInput) {
-  writeStreet(folder / "in", 1);
-  import("in");
+  importStreet("in", 1);
   const auto bytes = readText(folder / "in.rawlog");
   expectFailure(runProgram(extractMain, {"--config", config(), "--input", at("in.rawlog"),
                                          "--output", at("in.rawlog")}),
@@ -292,8 +283,7 @@ TEST_F(ExtractApp, RefusesToReplaceItsInput) {
 }
 
 TEST_F(ExtractApp, NamesWhatAFileInTheWrongPlaceIs) {
-  writeStreet(folder / "in", 1);
-  import("in");
+  importStreet("in", 1);
   expectFailure(runProgram(extractMain, {"--config", at("in.rawlog"), "--input", at("in.rawlog"),
                                          "--output", at("poles.rawlog")}),
                 {"in.rawlog: it is a rawlog, not an INI file"});
@@ -304,8 +294,7 @@ TEST_F(ExtractApp, NamesWhatAFileInTheWrongPlaceIs) {
 
 // Whatever the way of writing the name, and for all outputs of all programs.
 TEST_F(ExtractApp, SideOutputsReplaceNoInput) {
-  writeStreet(folder / "in", 1);
-  import("in");
+  importStreet("in", 1);
   const auto settings = readText(config());
   const fs::path path = config();
   const std::string same = (path.parent_path() / "." / path.filename()).string();

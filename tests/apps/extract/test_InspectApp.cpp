@@ -166,8 +166,7 @@ TEST_F(InspectApp, SaysWhenCloudsStandOnTheirHead) {
 }
 
 TEST_F(InspectApp, RefusesPolesAndEmptyRawlogs) {
-  writeStreet(folder / "in", 2);
-  import("in");
+  importStreet("in", 2);
   ASSERT_EQ(
       run({"--config", config(), "--input", at("in.rawlog"), "--output", at("poles.rawlog")}).code,
       0);
@@ -203,10 +202,9 @@ TEST_F(InspectApp, AWrongModelIsRefused) {
 }
 
 TEST_F(InspectApp, KnowsTheLidarOfKitti) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  POLEMCL_NEEDS_DATA();
   ImportOptions options;
-  options.input = fs::path(data) / "kitti_raw_0005";
+  options.input = dataFolder() / "kitti_raw_0005";
   options.output = folder / "in.rawlog";
   options.every = 20;
   importDataset(options);
@@ -331,10 +329,9 @@ TEST(RawlogInspection, PacketsStateTheirTiming) {
 }
 
 TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  POLEMCL_NEEDS_DATA();
   ImportOptions options;
-  options.input = fs::path(data) / "kitti_raw_0005";
+  options.input = dataFolder() / "kitti_raw_0005";
   options.output = folder / "in.rawlog";
   importDataset(options);
   InspectOptions files;

@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 
 #include <csignal>
-#include <cstdlib>
 
 #include "import/ImportApp.h"
 #include "mrpt/rawlog/RawlogReader.h"
@@ -216,10 +215,9 @@ TEST_F(ImportApp, WrongUsage) {
 }
 
 TEST_F(ImportApp, ImportsRealScans) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  POLEMCL_NEEDS_DATA();
   const Outcome outcome = succeeded(
-      runProgram(importMain, {"folder", "--input", (fs::path(data) / "kitti_raw_0005").string(),
+      runProgram(importMain, {"folder", "--input", (dataFolder() / "kitti_raw_0005").string(),
                               "--output", (folder / "out.rawlog").string(), "--every", "2"}));
   EXPECT_NE(outcome.out.find(" 40 scans"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("odometry: from the dataset"), std::string::npos) << outcome.out;

@@ -7,7 +7,6 @@
 #include <mrpt/poses/CPosePDFGaussian.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "extract/ExtractApp.h"
 #include "import/DatasetImport.h"
@@ -174,12 +173,10 @@ TEST_F(ImportOwners, PosesForPcdFiles) {
 }
 
 TEST_F(ImportOwners, TheRealNcltScanGivesPolesWithItsConfiguration) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  POLEMCL_NEEDS_DATA();
   const auto rawlog = (folder / "out.rawlog").string(), csv = (folder / "poles.csv").string();
-  const Outcome outcome =
-      succeeded(runProgram(importMain, {"nclt", "--input", (fs::path(data) / "nclt_scan").string(),
-                                        "--output", rawlog}));
+  const Outcome outcome = succeeded(runProgram(
+      importMain, {"nclt", "--input", (dataFolder() / "nclt_scan").string(), "--output", rawlog}));
   const Outcome extracted = succeeded(
       runProgram(extractMain, {"--config", POLEMCL_SOURCE_DIR "/config/nclt.ini", "--input", rawlog,
                                "--output", (folder / "poles.rawlog").string(), "--csv", csv}));

@@ -113,6 +113,23 @@ class LiveDriveTest : public testing::Test {
     }
   }
 
+  /// Each turn waits for the pose of the one before the last, so none is dropped on a slow machine;
+  /// Ctrl-C after the last pose.
+  void driveAndInterrupt(int turns, bool clock = false) {
+    drive(
+        turns, [this](std::size_t complete) { waitForLines(complete); }, clock);
+    waitForLines(static_cast<std::size_t>(turns - 2));
+    interrupt();
+  }
+  /// The program, while another thread sends.
+  Outcome runDuring(const std::function<void()>& sending,
+                    const std::vector<std::string>& more = {}) {
+    std::thread sender(sending);
+    const Outcome outcome = run(more);
+    sender.join();
+    return outcome;
+  }
+
   static std::size_t countOf(const std::string& words, const std::string& text) {
     std::size_t count = 0;
     for (auto at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
@@ -129,16 +146,8 @@ class LiveDriveTest : public testing::Test {
   std::atomic<bool> ended{false};
 };
 
-/// Each turn waits for the pose of the one before the last, so none is dropped on a slow machine.
 TEST_F(LiveDriveTest, PacketsBecomePosesUntilCtrlC) {
-  std::thread sender([this] {
-    drive(22, [this](std::size_t complete) { waitForLines(complete); });
-    waitForLines(20);
-    interrupt();
-  });
-  const Outcome outcome = run();
-  sender.join();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runDuring([this] { driveAndInterrupt(22); }));
   const auto all = lines();
   ASSERT_EQ(all.size(), 20u);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -169,15 +178,8 @@ TEST_F(LiveDriveTest, PacketsBecomePosesUntilCtrlC) {
 }
 
 TEST_F(LiveDriveTest, TheRecordGivesTheSamePoses) {
-  std::thread sender([this] {
-    drive(12, [this](std::size_t complete) { waitForLines(complete); });
-    waitForLines(10);
-    interrupt();
-  });
   const std::string record = (folder / "record.rawlog").string();
-  const Outcome live = run({"--record", record});
-  sender.join();
-  ASSERT_EQ(live.code, 0) << live.err;
+  succeeded(runDuring([this] { driveAndInterrupt(12); }, {"--record", record}));
   const Outcome played = succeeded(runProgram(
       localizeMain,
       {"--config", std::string(POLEMCL_SOURCE_DIR) + "/config/vlp16.ini", "--input", record,
@@ -202,13 +204,10 @@ TEST_F(LiveDriveTest, APcapFilePlaysAsIfLiveAndEnds) {
   writeText(folder / "drive.pcap", pcapFile(packets, lidarPort));
   writeSensors("process_rate = 754\npcap_read_fast = true\npcap_input = " +
                (folder / "drive.pcap").string());
-  std::thread sender([this] {
+  const Outcome outcome = succeeded(runDuring([this] {
     const UdpSender odometry(odometryPort);
     while (!ended) odometry.send("0 0 0");
-  });
-  const Outcome outcome = run();
-  sender.join();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }));
   EXPECT_EQ(outcome.err, "");
   const auto summary = result("summary.json");
   const auto all = lines();
@@ -232,9 +231,8 @@ TEST_F(LiveDriveTest, ASensorThatFailsEndsTheDriveWithItsResults) {
                "process_rate = 50\npcap_read_fast = true\ndata_port = " +
                    std::to_string(lidarPort) +
                    "\npcap_input = " + (folder / "drive.pcap").string() + "\n");
-  std::thread sender([&] { drive(6, [this](std::size_t complete) { waitForLines(complete); }); });
-  const Outcome outcome = run();
-  sender.join();
+  const Outcome outcome =
+      runDuring([this] { drive(6, [this](std::size_t complete) { waitForLines(complete); }); });
   expectFailure(outcome, {"scans of two sensors", "the results up to then are in", "out"});
   EXPECT_GE(io::readPlanarTum(folder / "out/run_00.tum").size(), 4u);
 }
@@ -320,17 +318,9 @@ TEST_F(LiveDriveTest, DoesNotWarnOfTurnsThatFit) {
         Case{true, {"sensor.turn=clockwise", "sensor.cut_deg=0", "sensor.stamp_turn=0"}}}) {
     ended = false;
     fs::remove(folder / "poses.jsonl");
-    std::thread sender([&] {
-      drive(
-          5, [this](std::size_t complete) { waitForLines(complete); }, one.clock);
-      waitForLines(3);
-      interrupt();
-    });
     std::vector<std::string> more{"--quiet"};
     for (const auto& set : one.set) more.insert(more.end(), {"--set", set});
-    const Outcome outcome = run(more);
-    sender.join();
-    EXPECT_EQ(outcome.code, 0);
+    const Outcome outcome = succeeded(runDuring([&] { driveAndInterrupt(5, one.clock); }, more));
     EXPECT_EQ(outcome.err, "");
   }
 }
@@ -382,22 +372,15 @@ TEST_F(LiveDriveTest, AStreamThatNobodyReadsDoesNotHoldTheProgram) {
 }
 
 TEST_F(LiveDriveTest, ADriveWithoutPolesKeepsItsResults) {
-  std::thread sender([this] {
-    drive(6, [this](std::size_t complete) { waitForLines(complete); });
-    waitForLines(4);
-    interrupt();
-  });
-  const Outcome outcome = run({"--set", "scan_line.min_confidence=1"});
-  sender.join();
+  const Outcome outcome =
+      runDuring([this] { driveAndInterrupt(6); }, {"--set", "scan_line.min_confidence=1"});
   expectFailure(outcome, {"no pole in any of", "the results up to then are in"});
   EXPECT_TRUE(fs::exists(folder / "out/summary.json"));
 }
 
 TEST_F(LiveDriveTest, AFirstScanThatCannotBeUsedIsSaid) {
-  std::thread sender([this] { drive(6, [](std::size_t) {}); });
   start = "100000,0,0,2,5";
-  const Outcome outcome = run();
-  sender.join();
+  const Outcome outcome = runDuring([this] { drive(6, [](std::size_t) {}); });
   expectFailure(outcome, {"the start at 100000 0 m lies"});
   EXPECT_FALSE(fs::exists(folder / "out/summary.json"));
 }

@@ -159,8 +159,7 @@ TEST(SettingsTest, AreReadReplacedAndWritten) {
 
 TEST_F(StreetTest, PointsBecomePoses) {
   constexpr std::size_t number = 25;
-  writeStreet(folder / "in", number);
-  import("in");
+  importStreet("in", number);
   buildAtTruth();
   const auto truth = io::planar(io::readTum(folder / "in.tum"));
   Localizer localizer(Settings(config()), folder / "map.polemap");
@@ -181,8 +180,7 @@ class OdometryTest : public StreetTest {
  protected:
   static constexpr std::size_t number = 12;
   OdometryTest() {
-    writeStreet(folder / "in", number);
-    import("in");
+    importStreet("in", number);
     buildAtTruth();
   }
   Localizer started() const {
@@ -431,8 +429,7 @@ TEST_F(OdometryTest, IsKeptForAMinute) {
 
 TEST_F(StreetTest, PointsBecomeTheMapOfPoleMapBuild) {
   constexpr std::size_t number = 12;
-  writeStreet(folder / "in", number);
-  import("in");
+  importStreet("in", number);
   buildAtTruth();
   const auto truth = io::planar(io::readTum(folder / "in.tum"));
   MapBuilder builder{Settings(config())};

@@ -2,8 +2,6 @@
 /// \brief config/paper is the authors' program: nothing beyond it is on, a kidnapped vehicle
 /// stays lost, and on its own detections of a real drive the errors are those it has.
 
-#include <cstdlib>
-
 #include "cli/Settings.h"
 #include "import/ImportApp.h"
 #include "io/data/Trajectory.h"
@@ -142,11 +140,7 @@ class Parity {
 
 class PaperModeOnKitti : public testing::Test {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("POLEMCL_DATA");
-    if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
-    m_data = data;
-  }
+  void SetUp() override { POLEMCL_NEEDS_DATA(); }
   std::vector<Pose2D> poses(const std::string& file) const {
     std::vector<Pose2D> result;
     for (const auto& pose : io::readKittiPoses(m_data / "kitti_raw_0005" / file))
@@ -199,7 +193,7 @@ class PaperModeOnKitti : public testing::Test {
     EXPECT_LE(now.run(2.5, 20).mean, 0.070);
   }
 
-  fs::path m_data;
+  const fs::path m_data = dataFolder();
 };
 
 TEST(PaperMode, NothingBeyondThePaperIsOn) {

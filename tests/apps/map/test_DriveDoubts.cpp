@@ -17,8 +17,7 @@ using namespace testing_apps;
 class DriveDoubts : public StreetTest {
  protected:
   void driveWithFixes(std::size_t scans) {
-    writeStreet(folder / "in", scans);
-    import("in");
+    importStreet("in", scans);
     writeFixes();
   }
   /// Takes scans out of the rawlog; the odometry tells the way over the gap.
@@ -90,8 +89,7 @@ TEST_F(DriveDoubts, ManyMotionsThatNothingTellsGiveAWarning) {
 }
 
 TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
-  writeStreet(folder / "in", 30);
-  import("in");
+  importStreet("in", 30);
   const Outcome right = succeeded(buildWithoutTruth());
   EXPECT_EQ(right.err, "");
   EXPECT_EQ(info().count("warnings"), 0u);
@@ -112,8 +110,7 @@ TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
 
 TEST_F(DriveDoubts, ALidarThatIsTurnedIsTold) {
   const std::string told = "warning: in.rawlog: as the poles pass, the LiDAR points 3.";
-  writeStreet(folder / "in", 30);
-  import("in");
+  importStreet("in", 30);
   EXPECT_EQ(buildWithoutTruth().err, "");
   std::string rows;  // to the left by 3.2°
   for (const std::string& line : io::readLines(folder / "in" / "odometry.txt")) {

@@ -38,6 +38,10 @@ class MapUpdateApp : public StreetTest {
                                        "--truth", at("day0.tum"), "--date", "2026-03-01",
                                        "--output", at("day0.polemap"), "--csv", at("m.csv")}));
   }
+  void mapYesterdayAndDriveToday() {
+    mapYesterday();
+    drive("day1", today);
+  }
   Outcome update(const std::vector<std::string>& more = {}) {
     return runProgram(
         mapMain,
@@ -89,8 +93,7 @@ TEST_F(MapUpdateApp, AFreshMapTellsWhenItsPolesWereSeen) {
 }
 
 TEST_F(MapUpdateApp, TheMapFollowsTheStreet) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   const Outcome outcome = succeeded(
       update({"--date", "2026-03-02", "--csv", at("new.csv"), "--scene", at("new.3Dscene")}));
   const auto before = io::readPoleMap(folder / "day0.polemap").poles;
@@ -109,8 +112,7 @@ TEST_F(MapUpdateApp, TheMapFollowsTheStreet) {
 }
 
 TEST_F(MapUpdateApp, ListsAndDrawsWhatChanged) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   ASSERT_EQ(update().code, 0);
   const Outcome outcome = succeeded(
       runProgram(mapMain, {"diff", at("day0.polemap"), at("day1.polemap"), "--png", at("d.png"),
@@ -150,8 +152,7 @@ TEST_F(MapUpdateApp, RefusesASessionOfAnotherPlace) {
 }
 
 TEST_F(MapUpdateApp, RefusesASessionInAnotherFrame) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   auto truth = io::planar(io::readTum(folder / "day1.tum"));
   for (auto& pose : truth) pose.pose.y += 20000;
   io::writeTum(folder / "day1.tum", truth);
@@ -159,8 +160,7 @@ TEST_F(MapUpdateApp, RefusesASessionInAnotherFrame) {
 }
 
 TEST_F(MapUpdateApp, RefusesASessionOfAnEarlierDay) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   expectFailure(update({"--date", "2026-02-28"}),
                 {"day1.rawlog", "is of 2026-02-28", "day0.polemap of 2026-03-01", "--date"});
   EXPECT_EQ(update({"--date", "2026-03-01"}).code, 0);
@@ -177,8 +177,7 @@ TEST_F(MapUpdateApp, RefusesBadFilesAndDates) {
 
 // The run of a localizer serves instead of the truth. Where it was not ok, nothing changes.
 TEST_F(MapUpdateApp, TakesTheLocalizersOwnPoses) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   ASSERT_EQ(update({"--json", at("truth.json")}).code, 0);
   const std::string byTruth = readText(folder / "day1.polemap");
   writeRun("ok", 1e-6);
@@ -196,8 +195,7 @@ TEST_F(MapUpdateApp, TakesTheLocalizersOwnPoses) {
 }
 
 TEST_F(MapUpdateApp, DoubtfulPosesDoNotChangeTheMap) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   writeRun("degraded", 1e-6);
   expectFailure(updateByRun(), {"day1.rawlog", "25 at which the localizer was not ok"});
   writeRun("ok", 0.09);  // 0.3 m
@@ -269,8 +267,7 @@ TEST_F(MapUpdateApp, AnInventoryBecomesAsExactAsTheLidar) {
 }
 
 TEST_F(MapUpdateApp, WarnsWhenManyPolesHaveMoved) {
-  mapYesterday();
-  drive("day1", today);  // 1 of about 12 moved
+  mapYesterdayAndDriveToday();  // 1 of about 12 moved
   const Outcome outcome = succeeded(update({"--quiet", "--json", at("update.json")}));
   EXPECT_NE(outcome.err.find("pole-map: warning: "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("seem to have moved"), std::string::npos) << outcome.err;

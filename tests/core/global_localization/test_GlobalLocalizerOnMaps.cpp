@@ -15,16 +15,13 @@
 #include "io/file/Npz.h"
 #include "io/map/PoleTables.h"
 #include "support/PoleCity.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::test_global_localizer_on_maps {
 namespace {
 
+using testing_apps::dataFolder;
 using tests::Way;
-
-std::filesystem::path dataFolder() {
-  const char* folder = std::getenv("POLEMCL_DATA");
-  return folder ? folder : "";
-}
 
 /// x and y of a gzipped KITTI trajectory, points half a metre or more apart.
 Way readRoad(const std::filesystem::path& file) {

@@ -5,7 +5,6 @@
 #include <mrpt/obs/CObservationRotatingScan.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <numeric>
@@ -354,11 +353,11 @@ TEST(ObservationPoints, UnprojectsDepthImagesOnACopy) {
 }
 
 TEST(ObservationPoints, RealKittiScan) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  POLEMCL_NEEDS_DATA();
   CObservationPointCloud observation;
-  observation.setAsExternalStorage(std::string(data) + "/kitti_raw_0005/velodyne/0000000000.bin",
-                                   CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+  observation.setAsExternalStorage(
+      testing_apps::dataFolder().string() + "/kitti_raw_0005/velodyne/0000000000.bin",
+      CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
   ObservationPoleExtractor extraction(ObservationPoleExtractorOptions{});
   const auto scan = extraction.process(observation);
   EXPECT_GE(scan->poles.size(), 8u);
