@@ -12,6 +12,7 @@
 
 namespace polemcl::apps {
 namespace {
+
 constexpr const char* s_head = R"(# Settings
 
 All programs with `--config` read one INI file. It needs only the keys that differ from their defaults:
@@ -199,6 +200,8 @@ void checkGroups(const PageBinder& binder) {
                   "] must be on one page: list the section once in groups() of SettingsPage.cpp");
 }
 
+}  // namespace
+
 std::map<std::string, std::string> settingsPages() {
   PageBinder binder;
   AllSettings defaults;
@@ -217,5 +220,4 @@ std::map<std::string, std::string> settingsPages() {
   return pages;
 }
 
-}  // namespace
 }  // namespace polemcl::apps

@@ -385,8 +385,8 @@ TEST(CPoleMap, IsCreatedFromIni) {
 TEST(CPoleMap, LoadsItsFileAtCreation) {
   const testing_apps::TempFolder folder;
   sampleMap().saveToPoleMapFile(folder / "m.polemap");
-  const auto maps =
-      fromIni(kOne + "[MetricMap_poleMap_00_creationOpts]\nmap_file = " + (folder / "m.polemap"));
+  const auto maps = fromIni(
+      kOne + "[MetricMap_poleMap_00_creationOpts]\nmap_file = " + (folder / "m.polemap").string());
   expectEqual(*maps->mapByClass<CPoleMap>(), sampleMap());
 }
 

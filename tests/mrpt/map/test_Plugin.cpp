@@ -71,7 +71,8 @@ struct Street {
 
   /// Output of a command, both streams; run in the folder of the street.
   std::string run(const std::string& command) const {
-    const std::string line = "cd '" + (folder / "") + "' && " + command + " </dev/null 2>&1";
+    const std::string line =
+        "cd '" + folder.path().string() + "' && " + command + " </dev/null 2>&1";
     FILE* pipe = popen(line.c_str(), "r");
     std::string text;
     char buffer[4096];

@@ -4,6 +4,7 @@
 #include "report/scene/LiveScene.h"
 #include "report/scene/PlayerKeys.h"
 #include "report/scene/PlayerPanels.h"
+#include "support/ExpectHas.h"
 #include "support/LiveMoments.h"
 #include "support/Scenes.h"
 
