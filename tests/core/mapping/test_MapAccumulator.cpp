@@ -91,38 +91,6 @@ TEST(MapAccumulator, UsesEverythingUnlessAsked) {
   }
 }
 
-TEST(MapAccumulator, LaterSessionsCountWhereNobodyHasBeen) {
-  std::mt19937 random(5);
-  const auto walk = [&] {
-    std::vector<SessionScan> scans;
-    double x = random() % 100, y = random() % 100;
-    for (int i = 0; i < 150; ++i) {
-      x += static_cast<double>(random() % 200) / 100 - 0.7;
-      y += static_cast<double>(random() % 200) / 100 - 0.9;
-      scans.push_back(scanAt(x, y, {}));
-    }
-    return scans;
-  };
-  MapAccumulator map = fresh(10);
-  std::vector<Pose2D> visited;
-  std::size_t left = 0, taken = 0;
-  for (int session = 0; session < 6; ++session) {
-    const auto scans = walk();
-    const auto used = chosen(map, scans);
-    for (std::size_t i = 0; i < scans.size(); ++i) {
-      double nearest = 1e9;
-      for (const Pose2D& place : visited)
-        nearest = std::min(nearest, std::hypot(place.x - scans[i].pose_map_robot.x,
-                                               place.y - scans[i].pose_map_robot.y));
-      ASSERT_EQ(used[i], nearest > 10) << session << ' ' << i << ' ' << nearest;
-      (used[i] ? taken : left) += session > 0;
-    }
-    for (const auto& scan : scans) visited.push_back(scan.pose_map_robot);
-  }
-  EXPECT_GT(left, 100u);  // both happen
-  EXPECT_GT(taken, 100u);
-}
-
 TEST(MapAccumulator, PlacesOfScansThatAreNotUsedAreVisitedToo) {
   MapAccumulator map = fresh(10);
   chosen(map, {scanAt(0, 0, {})});

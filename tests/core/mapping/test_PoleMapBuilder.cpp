@@ -72,31 +72,9 @@ TEST(PoleMapBuilder, SectionsWithoutAScanNeitherCountNorBreak) {
 
 TEST(PoleMapBuilder, OneRunMustSufficeByItself) {
   EXPECT_EQ(polesOf("xx......xx", 3, 2), 0u);
-  EXPECT_EQ(polesOf("xx......xxx", 3, 2), 1u);
+  for (const char* enough : {"xx......xxx", "xxx......xx"}) EXPECT_EQ(polesOf(enough, 3, 2), 1u);
   // All keyframes that saw it count for the pole itself, of whatever run.
   EXPECT_EQ(buildPoleMap(pattern("xx......xxx"), sectionsOfOneMetre(3, 2)).poles.at(0).count, 5u);
-}
-
-TEST(PoleMapBuilder, CountingEqualsTryingAllRuns) {
-  std::mt19937_64 random(1);
-  for (int i = 0; i < 200; ++i) {
-    std::string sees;
-    for (int k = 0; k < 14; ++k) sees += "x.. "[random() % 4];
-    const int minCount = 1 + static_cast<int>(random() % 4),
-              maxGap = static_cast<int>(random() % 3);
-    // Only occupied sections matter. A run: a stretch without more than maxGap misses in a row.
-    std::string occupied;
-    for (char c : sees) occupied += c == ' ' ? std::string() : std::string(1, c);
-    int best = 0;
-    for (std::size_t from = 0; from < occupied.size(); ++from) {
-      for (std::size_t to = from; to < occupied.size(); ++to) {
-        const std::string run = occupied.substr(from, to - from + 1);
-        if (run.find(std::string(maxGap + 1, '.')) != std::string::npos) continue;
-        best = std::max(best, static_cast<int>(std::count(run.begin(), run.end(), 'x')));
-      }
-    }
-    ASSERT_EQ(polesOf(sees, minCount, maxGap), best >= minCount ? 1u : 0u) << '"' << sees << '"';
-  }
 }
 
 TEST(PoleMapBuilder, ARunDoesNotContinueInAnotherDrive) {
