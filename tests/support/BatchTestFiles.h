@@ -1,6 +1,5 @@
 #pragma once
-/// \file BatchTestFiles.h
-/// \brief Batches for tests: files of simulated sessions, plans of made-up tasks.
+// Batches for tests: files of simulated sessions, plans of made-up tasks.
 
 #include <map>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file EvalTest.h
-/// \brief A fixture for commands of `pole-eval`: runs them on small files written by the test.
+// A fixture for commands of `pole-eval`: runs them on small files written by the test.
 
 #include <functional>
 #include <nlohmann/json.hpp>

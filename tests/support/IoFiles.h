@@ -1,6 +1,5 @@
 #pragma once
-/// \file IoFiles.h
-/// \brief Shared by the tests of io/: a temporary folder, files in it, messages of errors.
+// Shared by the tests of io/: a temporary folder, files in it, messages of errors.
 
 #include <sys/resource.h>
 #include <zlib.h>

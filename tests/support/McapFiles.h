@@ -1,6 +1,5 @@
 #pragma once
-/// \file McapFiles.h
-/// \brief Writes MCAP files byte by byte, as the format is published (mcap.dev).
+// Writes MCAP files byte by byte, as the format is published (mcap.dev).
 
 #include <lz4frame.h>
 #include <zlib.h>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file NcltSamples.h
-/// \brief Files of NCLT, byte by byte as in read_vel_sync.py and read_vel_hits.py of the dataset.
+// Files of NCLT, byte by byte as in read_vel_sync.py and read_vel_hits.py of the dataset.
 
 #include <Eigen/Core>
 #include <cmath>

@@ -1,7 +1,6 @@
 #pragma once
-/// \file OusterTurns.h
-/// \brief A street of poles as the packets of an Ouster, byte by byte as its manual says, and the
-/// metadata of that LiDAR.
+// A street of poles as the packets of an Ouster, byte by byte as its manual says, and the
+// metadata of that LiDAR.
 
 #include "support/VelodynePackets.h"
 

@@ -1,6 +1,5 @@
 #pragma once
-/// \file Pixels.h
-/// \brief Reads a PNG with MRPT's image class, which is independent of the writer.
+// Reads a PNG with MRPT's image class, which is independent of the writer.
 
 #include <mrpt/img/CImage.h>
 

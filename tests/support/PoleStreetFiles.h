@@ -1,7 +1,6 @@
 #pragma once
-/// \file PoleStreetFiles.h
-/// \brief A street of bare poles on flat ground, seen by an HDL-32E 1.0 m above it, as a scan
-/// folder.
+// A street of bare poles on flat ground, seen by an HDL-32E 1.0 m above it, as a scan
+// folder.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file Poles.h
-/// \brief Poles for tests: detections and poles of a map, and their comparison.
+// Poles for tests: detections and poles of a map, and their comparison.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 #pragma once
-/// \file SampleViews.h
-/// \brief A small drive to draw: along x from 0 to 20 m, four poles beside it.
+// A small drive to draw: along x from 0 to 20 m, four poles beside it.
 
 #include "report/picture/MapView.h"
 #include "support/TempFolder.h"

@@ -1,6 +1,5 @@
 #pragma once
-/// \file Samples.h
-/// \brief Invented, plausible poles and clouds for the tests; and archives in memory.
+// Invented, plausible poles and clouds for the tests; and archives in memory.
 
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file StreetTest.h
-/// \brief Shared by the tests of pole-extract and pole-map: an imported street.
+// Shared by the tests of pole-extract and pole-map: an imported street.
 
 #include <functional>
 

@@ -1,6 +1,5 @@
 #pragma once
-/// \file TempFolder.h
-/// \brief A temporary folder for one test, and helpers for files and programs.
+// A temporary folder for one test, and helpers for files and programs.
 
 #include <gtest/gtest.h>
 #include <unistd.h>

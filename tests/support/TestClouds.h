@@ -1,7 +1,6 @@
 #pragma once
-/// \file TestClouds.h
-/// \brief Clouds of an invented place, cast ray by ray: flat ground, vertical cylinders, a round
-/// wall.
+// Clouds of an invented place, cast ray by ray: flat ground, vertical cylinders, a round
+// wall.
 
 #include <Eigen/Geometry>
 #include <algorithm>

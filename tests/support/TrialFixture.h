@@ -1,6 +1,5 @@
 #pragma once
-/// \file TrialFixture.h
-/// \brief Trials on a simulated drive.
+// Trials on a simulated drive.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,7 +1,6 @@
 #pragma once
-/// \file VelodynePackets.h
-/// \brief A street of poles as the packets of a VLP-16, byte by byte as its manual says, and a PCAP
-/// file of them.
+// A street of poles as the packets of a VLP-16, byte by byte as its manual says, and a PCAP
+// file of them.
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,4 @@
-/// \file test_AllocationLimit.cpp
-/// \brief Programs take no memory for what a rawlog only claims to hold.
+// Programs take no memory for what a rawlog only claims to hold.
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>

@@ -1,5 +1,4 @@
-/// \file test_Completion.cpp
-/// \brief The completion in bash, which asks the programs.
+// The completion in bash, which asks the programs.
 
 #include <gtest/gtest.h>
 

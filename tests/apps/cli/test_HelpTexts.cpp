@@ -1,5 +1,4 @@
-/// \file test_HelpTexts.cpp
-/// \brief What `--help` says of every program and subcommand, and that its examples can be typed.
+// What `--help` says of every program and subcommand, and that its examples can be typed.
 
 #include <gtest/gtest.h>
 

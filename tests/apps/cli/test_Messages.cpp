@@ -1,5 +1,4 @@
-/// \file test_Messages.cpp
-/// \brief What programs write on a terminal, elsewhere, with `--quiet` and with `--verbose`.
+// What programs write on a terminal, elsewhere, with `--quiet` and with `--verbose`.
 
 #include <gtest/gtest.h>
 

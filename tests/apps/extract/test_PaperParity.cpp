@@ -1,5 +1,4 @@
-/// \file test_PaperParity.cpp
-/// \brief Paper mode finds the poles that the paper's authors' program finds in the same scans.
+// Paper mode finds the poles that the paper's authors' program finds in the same scans.
 
 #include <cmath>
 #include <cstdlib>

@@ -1,5 +1,4 @@
-/// \file test_ImportOwners.cpp
-/// \brief `pole-import nclt`, `mulran`, and `--poses`: from the owners' files to rawlog and truth.
+// `pole-import nclt`, `mulran`, and `--poses`: from the owners' files to rawlog and truth.
 
 #include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>

@@ -1,6 +1,5 @@
-/// \file test_LiveDrive.cpp
-/// \brief `pole-localize --sensors`: packets of a VLP-16 over the network or from a PCAP file, with
-/// the shipped example of an INI file.
+// `pole-localize --sensors`: packets of a VLP-16 over the network or from a PCAP file, with
+// the shipped example of an INI file.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

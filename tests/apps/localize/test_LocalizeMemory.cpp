@@ -1,5 +1,4 @@
-/// \file test_LocalizeMemory.cpp
-/// \brief pole-localize takes the same memory for a drive of any length.
+// pole-localize takes the same memory for a drive of any length.
 
 #include "support/LocalizeTest.h"
 #include "support/MemoryTaken.h"

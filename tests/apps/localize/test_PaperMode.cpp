@@ -1,6 +1,5 @@
-/// \file test_PaperMode.cpp
-/// \brief config/paper is the authors' program: nothing beyond it is on, a kidnapped vehicle
-/// stays lost, and on its own detections of a real drive the errors are those it has.
+// config/paper is the authors' program: nothing beyond it is on, a kidnapped vehicle
+// stays lost, and on its own detections of a real drive the errors are those it has.
 
 #include "cli/Settings.h"
 #include "import/ImportApp.h"

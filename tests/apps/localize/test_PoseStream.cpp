@@ -1,6 +1,5 @@
-/// \file test_PoseStream.cpp
-/// \brief `pole-localize --stream` and `--follow`: poses as they are made, also from a rawlog that
-/// still grows.
+// `pole-localize --stream` and `--follow`: poses as they are made, also from a rawlog that
+// still grows.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
-/// \file test_RunBag.cpp
-/// \brief `pole-localize --mcap`: the first run as a bag of ROS 2.
+// `pole-localize --mcap`: the first run as a bag of ROS 2.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
-/// \file test_TwoLidars.cpp
-/// \brief Two LiDARs on one vehicle, from the configuration to the summary.
+// Two LiDARs on one vehicle, from the configuration to the summary.
 
 #include <gtest/gtest.h>
 

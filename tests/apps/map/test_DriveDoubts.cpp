@@ -1,5 +1,4 @@
-/// \file test_DriveDoubts.cpp
-/// \brief pole-map build without true poses: what it says of an odometry that is wrong.
+// pole-map build without true poses: what it says of an odometry that is wrong.
 
 #include <sstream>
 

@@ -1,5 +1,4 @@
-/// \file test_MapSessions.cpp
-/// \brief pole-map with several sessions: the paper's protocol, and sessions added one by one.
+// pole-map with several sessions: the paper's protocol, and sessions added one by one.
 
 #include "extract/ExtractApp.h"
 #include "io/file/Bytes.h"

@@ -1,5 +1,4 @@
-/// \file test_TimingDoubt.cpp
-/// \brief What pole-map build says of drives whose timing is wrong.
+// What pole-map build says of drives whose timing is wrong.
 
 #include <gtest/gtest.h>
 

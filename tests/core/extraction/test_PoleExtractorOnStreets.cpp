@@ -1,5 +1,4 @@
-/// \file test_PoleExtractorOnStreets.cpp
-/// \brief How well poles are found on simulated streets and on a real drive.
+// How well poles are found on simulated streets and on a real drive.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
-/// \file test_GlobalLocalizerCovariance.cpp
-/// \brief Are the poses found without a start as uncertain as their covariances say, and poles as
-/// far off as is tolerated?
+// Are the poses found without a start as uncertain as their covariances say, and poles as
+// far off as is tolerated?
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
-/// \file test_GlobalLocalizerOnMaps.cpp
-/// \brief Global localization where poles and roads are real: a published map of a campus against
-/// poles labelled by hand, and the roads of a city drive.
+// Global localization where poles and roads are real: a published map of a campus against
+// poles labelled by hand, and the roads of a city drive.
 
 #include <gtest/gtest.h>
 #include <zlib.h>

@@ -1,5 +1,4 @@
-/// \file test_MapUpdater.cpp
-/// \brief Maps kept true in scenes made by hand, and in simulated streets whose poles change.
+// Maps kept true in scenes made by hand, and in simulated streets whose poles change.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
-/// \file test_MapUpdaterOnStreets.cpp
-/// \brief Simulated streets whose poles change from day to day: a kept map against one that is not.
+// Simulated streets whose poles change from day to day: a kept map against one that is not.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
-/// \file test_SessionAlignment.cpp
-/// \brief Sessions with erring poses are aligned to the map, piece by piece.
+// Sessions with erring poses are aligned to the map, piece by piece.
 
 #include <gtest/gtest.h>
 

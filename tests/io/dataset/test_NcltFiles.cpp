@@ -1,5 +1,4 @@
-/// \file test_NcltFiles.cpp
-/// \brief Folders of NCLT sessions, as left by the downloader and by its archives.
+// Folders of NCLT sessions, as left by the downloader and by its archives.
 
 #include "io/dataset/Nclt.h"
 #include "support/IoFiles.h"

@@ -1,5 +1,4 @@
-/// \file test_ForgedLengths.cpp
-/// \brief False lengths and counts in files must give an error and must not allocate memory.
+// False lengths and counts in files must give an error and must not allocate memory.
 
 #include <zlib.h>
 

@@ -1,5 +1,4 @@
-/// \file test_PublishedMaps.cpp
-/// \brief Scores of the authors' own NCLT map, as published or recomputed by them and others.
+// Scores of the authors' own NCLT map, as published or recomputed by them and others.
 
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/map/PoleTables.h"

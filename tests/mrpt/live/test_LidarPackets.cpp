@@ -1,5 +1,4 @@
-/// \file test_LidarPackets.cpp
-/// \brief Packets of real LiDARs of Ouster and Hesai, and their descriptions, right and wrong.
+// Packets of real LiDARs of Ouster and Hesai, and their descriptions, right and wrong.
 
 #include <gtest/gtest.h>
 

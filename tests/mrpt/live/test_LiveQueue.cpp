@@ -1,5 +1,4 @@
-/// \file test_LiveQueue.cpp
-/// \brief Order, odometry and overload of scans from sensors; times are numbers here.
+// Order, odometry and overload of scans from sensors; times are numbers here.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
-/// \file test_LiveSensors.cpp
-/// \brief INI files of sensors, right and wrong; MRPT's drivers are those of the installed library.
+// INI files of sensors, right and wrong; MRPT's drivers are those of the installed library.
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationOdometry.h>

@@ -1,5 +1,4 @@
-/// \file test_PacketScanner.cpp
-/// \brief Packets of an Ouster and a Hesai on the loopback and in PCAP files become turns.
+// Packets of an Ouster and a Hesai on the loopback and in PCAP files become turns.
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMap.h>

@@ -1,5 +1,4 @@
-/// \file test_VelodyneReceiver.cpp
-/// \brief Packets of Velodynes on the loopback and in PCAP files become turns.
+// Packets of Velodynes on the loopback and in PCAP files become turns.
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>

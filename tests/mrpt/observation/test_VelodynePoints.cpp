@@ -1,6 +1,5 @@
-/// \file test_VelodynePoints.cpp
-/// \brief Points of Velodyne packets, against MRPT where it reads them, and against the simulated
-/// street.
+// Points of Velodyne packets, against MRPT where it reads them, and against the simulated
+// street.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
-/// \file test_VisibilityRangeFrames.cpp
-/// \brief Visibility ranges converted from the LiDAR frame to the robot frame: mountings rotate and
-/// shift them.
+// Visibility ranges converted from the LiDAR frame to the robot frame: mountings rotate and
+// shift them.
 
 #include <algorithm>
 

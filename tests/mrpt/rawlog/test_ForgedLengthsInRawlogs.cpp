@@ -1,5 +1,4 @@
-/// \file test_ForgedLengthsInRawlogs.cpp
-/// \brief False lengths and counts in archives must give an error and must not allocate memory.
+// False lengths and counts in archives must give an error and must not allocate memory.
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>

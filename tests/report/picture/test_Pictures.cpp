@@ -1,5 +1,4 @@
-/// \file test_Pictures.cpp
-/// \brief That the pictures show what they are given, where it is. test_draw.py tests their looks.
+// That the pictures show what they are given, where it is. test_draw.py tests their looks.
 
 #include <gtest/gtest.h>
 

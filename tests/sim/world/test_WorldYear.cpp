@@ -1,5 +1,4 @@
-/// \file test_WorldYear.cpp
-/// \brief Changes of a world during a year: permanent changes of poles, seasons, building sites.
+// Changes of a world during a year: permanent changes of poles, seasons, building sites.
 
 #include <gtest/gtest.h>
 
