@@ -231,13 +231,6 @@ TEST_F(LocalizeApp, RefusesAStartInAnotherFrame) {
   expectFailure(runWithTruth(), {"from the nearest pole", "1000"});
 }
 
-TEST_F(LocalizeApp, RefusesATruthOfAnotherDrive) {
-  auto truth = io::planar(io::readTum(folder / "truth.tum"));
-  truth.resize(scans / 2 - 1);
-  io::writeTum(folder / "truth.tum", truth);
-  expectFailure(runWithTruth(), {"truth.tum", "19 of 40"});
-}
-
 TEST_F(LocalizeApp, WarnsOfATruthThatTheSpreadContradicts) {
   EXPECT_EQ(runWithTruth().err, "");
   EXPECT_EQ(summary()["ok_beyond_spread"], 0);

@@ -67,11 +67,5 @@ TEST(FilterOptions, ReadsAdaptiveSampling) {
   EXPECT_EQ(all.filter.kld.maxParticles, 3000);
 }
 
-TEST(FilterOptions, RefusesAStartThatIsNoPlace) {
-  StartOptions start;
-  start.pose = Pose2D{0, NAN, 0};
-  EXPECT_THROW(checkOptions(start), Error);
-}
-
 }  // namespace
 }  // namespace polemcl::test_filter_options
