@@ -1,6 +1,5 @@
 #pragma once
-/// \file SettingsPage.h
-/// \brief The reference pages of all settings, in share/doc.
+// The reference pages of all settings, in share/doc.
 
 #include <map>
 #include <string>

@@ -14,10 +14,6 @@ AllSettings load(const std::string& text) {
   return apps::settingsFrom(ConfigFile::fromText(text, "t.ini"), {});
 }
 
-std::string refusal(const std::string& text) {
-  return tests::messageOf([&] { load(text); });
-}
-
 const std::string kTwo =
     "[sensor]\nmodel = vlp16\nheight_m = 1.2\n[scan_line]\nmax_range_m = 30\n"
     "[vehicle]\nlidars = front os/rear.1\nfuse_within_s = 0.03\n"
@@ -61,15 +57,15 @@ TEST(VehicleSettings, AssignmentsReachTheSectionsOfALidar) {
 }
 
 TEST(VehicleSettings, Refusals) {
-  EXPECT_HAS(refusal("[sensor:front]\nheight_m = 1\n"),
-             "[vehicle] lidars must list the label behind the colon");
-  EXPECT_HAS(refusal("[vehicle]\nlidars = front Front\n"), "each label once");
-  EXPECT_HAS(refusal("[vehicle]\nlidars = front re[ar\n"), "re[ar is not one");
-  EXPECT_HAS(refusal("[vehicle]\nlidars = a\n[sensor:a]\npose = 1 2 3\n"),
-             "[sensor:a] pose = 3: allowed is six numbers");
-  EXPECT_HAS(refusal("[vehicle]\nlidars = a\n[sensor:a]\nmodel = table\n"),
-             "[sensor:a] elevations_deg");
-  EXPECT_HAS(refusal("[vehicle]\nfuse_within_s = -1\n"), "[vehicle] fuse_within_s = -1");
+  EXPECT_REFUSED(load("[sensor:front]\nheight_m = 1\n"),
+                 "[vehicle] lidars must list the label behind the colon");
+  EXPECT_REFUSED(load("[vehicle]\nlidars = front Front\n"), "each label once");
+  EXPECT_REFUSED(load("[vehicle]\nlidars = front re[ar\n"), "re[ar is not one");
+  EXPECT_REFUSED(load("[vehicle]\nlidars = a\n[sensor:a]\npose = 1 2 3\n"),
+                 "[sensor:a] pose = 3: allowed is six numbers");
+  EXPECT_REFUSED(load("[vehicle]\nlidars = a\n[sensor:a]\nmodel = table\n"),
+                 "[sensor:a] elevations_deg");
+  EXPECT_REFUSED(load("[vehicle]\nfuse_within_s = -1\n"), "[vehicle] fuse_within_s = -1");
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
-/// \file Preload.cpp
-/// \brief Loaded into the programs (LD_PRELOAD): notes what they do to files below
-/// POLEMCL_FAULT_ROOT, and lets one call fail, or ends everything before it as a power cut does.
-///
-/// POLEMCL_FAULT is `KIND:NUMBER:ERRNO`: the call of that kind and number fails; with 0 for ERRNO
-/// the group of processes is killed instead. Kind `change` counts the calls that change names or
-/// bring something to the disk. POLEMCL_FAULT_LOG gets a line for each call, with inodes for
-/// folders; a file that is replaced or removed gets a second link in POLEMCL_FAULT_KEEP, so that it
-/// can be put back.
+// Loaded into the programs (LD_PRELOAD): notes what they do to files below
+// POLEMCL_FAULT_ROOT, and lets one call fail, or ends everything before it as a power cut does.
+//
+// POLEMCL_FAULT is `KIND:NUMBER:ERRNO`: the call of that kind and number fails; with 0 for ERRNO
+// the group of processes is killed instead. Kind `change` counts the calls that change names or
+// bring something to the disk. POLEMCL_FAULT_LOG gets a line for each call, with inodes for
+// folders; a file that is replaced or removed gets a second link in POLEMCL_FAULT_KEEP, so that it
+// can be put back.
 
 #include <dlfcn.h>
 #include <fcntl.h>

@@ -1,6 +1,5 @@
-/// \file Player.cpp
-/// \brief Gives a rawlog of poles to the live queue of pole-localize, faster than it was driven.
-/// tests/long/run.sh loads it into the program (LD_PRELOAD).
+// Gives a rawlog of poles to the live queue of pole-localize, faster than it was driven.
+// tests/long/run.sh loads it into the program (LD_PRELOAD).
 
 #include <mrpt/hwdrivers/CGenericSensor.h>
 #include <mrpt/io/CFileGZInputStream.h>

@@ -1,8 +1,6 @@
 #pragma once
-/// \file BatchTestFiles.h
-/// \brief Batches for tests: files of simulated sessions, plans of made-up tasks.
+// Batches for tests: files of simulated sessions, plans of made-up tasks.
 
-#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 

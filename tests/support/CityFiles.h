@@ -1,6 +1,5 @@
 #pragma once
-/// \file CityFiles.h
-/// \brief A city of poles, its map and a drive through it, as the files that programs read.
+// A city of poles, its map and a drive through it, as the files that programs read.
 
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>

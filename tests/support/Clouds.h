@@ -1,6 +1,5 @@
 #pragma once
-/// \file Clouds.h
-/// \brief Clouds for the tests of core: growing, shuffled, rotated.
+// Clouds for the tests of core: growing, shuffled, rotated.
 
 #include <cmath>
 #include <utility>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file DetectionModels.h
-/// \brief A model that is simple enough to compute its results by hand.
+// A model that is simple enough to compute its results by hand.
 
 #include "sim/detections/DetectionModel.h"
 

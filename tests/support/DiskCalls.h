@@ -1,7 +1,6 @@
 #pragma once
-/// \file DiskCalls.h
-/// \brief What this process asks of the disk: DiskCalls.cpp takes the place of the C
-/// library's functions.
+// What this process asks of the disk: DiskCalls.cpp takes the place of the C
+// library's functions.
 
 #include <cerrno>
 #include <string>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file EvalTest.h
-/// \brief A fixture for commands of `pole-eval`: runs them on small files written by the test.
+// A fixture for commands of `pole-eval`: runs them on small files written by the test.
 
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -23,8 +22,7 @@ class EvalTest : public StreetTest {
   /// \brief What the command writes to the file of `--json`.
   nlohmann::json figures(Arguments arguments) const {
     arguments.insert(arguments.end(), {"--json", at("figures.json")});
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome = succeeded(run(arguments));
     return nlohmann::json::parse(outcome.code == 0 ? readText(at("figures.json")) : "null");
   }
   /// \brief Each row: arguments, and words of the one line that refuses them.

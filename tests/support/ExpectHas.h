@@ -1,6 +1,5 @@
 #pragma once
-/// \file ExpectHas.h
-/// \brief Expects a text within another, and shows the whole text when it is not there.
+// Expects a text within another, and shows the whole text when it is not there.
 
 #include <gtest/gtest.h>
 

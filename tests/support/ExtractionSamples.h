@@ -1,7 +1,6 @@
 #pragma once
-/// \file ExtractionSamples.h
-/// \brief Shared by the tests of extraction: clouds as MRPT observations, and the poles found in
-/// them.
+// Shared by the tests of extraction: clouds as MRPT observations, and the poles found in
+// them.
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>

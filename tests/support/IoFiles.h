@@ -1,33 +1,23 @@
 #pragma once
-/// \file IoFiles.h
-/// \brief Shared by the tests of io/: a temporary folder, files in it, messages of errors.
+// Shared by the tests of io/: a temporary folder, files in it, messages of errors.
 
-#include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <iterator>
 #include <optional>
-#include <string>
-#include <vector>
 
-#include <polemcl/core/common/Types.h>
 #include "support/Refusal.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::io::test {
 
 namespace fs = std::filesystem;
 
 inline std::string read(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return testing_apps::readText(file);
 }
 
 inline void writeGzip(const fs::path& file, const std::string& text) {
@@ -43,22 +33,11 @@ using tests::messageOf;
 /// A test with a folder of its own.
 class FolderTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "polemcl-io-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    m_folder = name;
-  }
-  void TearDown() override { fs::remove_all(m_folder); }
-
   fs::path path(const std::string& name) const { return m_folder / name; }
   /// Writes a file and the folders above it.
   fs::path write(const std::string& name, const std::string& content) const {
-    fs::create_directories(path(name).parent_path());
     fs::remove(path(name));  // overwriting makes some file systems wait for the disk
-    std::ofstream stream(path(name), std::ios::binary);
-    stream << content;
-    stream.close();
-    EXPECT_TRUE(stream.good());
+    testing_apps::writeText(path(name), content);
     return path(name);
   }
 
@@ -87,7 +66,8 @@ class FolderTest : public ::testing::Test {
       fs::remove(path(name));
   }
 
-  fs::path m_folder;
+  const testing_apps::TempFolder m_temporary;
+  const fs::path m_folder = m_temporary.path();
 };
 
 /// Limits the size of all files while it exists: simulates a full disk.
@@ -126,16 +106,6 @@ inline std::string doubles(std::initializer_list<double> values) {
   return bytes;
 }
 
-/// The folder of real data, or empty.
-inline fs::path dataFolder() {
-  const char* folder = std::getenv("POLEMCL_DATA");
-  return folder == nullptr ? fs::path() : fs::path(folder);
-}
+using testing_apps::dataFolder;
 
 }  // namespace polemcl::io::test
-
-/// Skips the test when there is no real data.
-#define POLEMCL_NEEDS_DATA()                                                  \
-  if (polemcl::io::test::dataFolder().empty()) {                              \
-    GTEST_SKIP() << "POLEMCL_DATA is not set: real scans and published maps"; \
-  }

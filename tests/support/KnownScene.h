@@ -1,6 +1,5 @@
 #pragma once
-/// \file KnownScene.h
-/// \brief A yard with four poles and no other vertical objects, for extraction.
+// A yard with four poles and no other vertical objects, for extraction.
 
 #include <algorithm>
 #include <cmath>

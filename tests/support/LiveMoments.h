@@ -1,6 +1,5 @@
 #pragma once
-/// \file LiveMoments.h
-/// \brief Moments of a run made of plain numbers, for tests.
+// Moments of a run made of plain numbers, for tests.
 
 #include <cmath>
 #include <vector>

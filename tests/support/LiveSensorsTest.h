@@ -1,6 +1,5 @@
 #pragma once
-/// \file LiveSensorsTest.h
-/// \brief Sensors of an INI file, and what they gave.
+// Sensors of an INI file, and what they gave.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 #pragma once
-/// \file LocalizeTest.h
-/// \brief The input of `pole-localize` as files, and its runs.
+// The input of `pole-localize` as files, and its runs.
 
 #include <nlohmann/json.hpp>
 

@@ -1,8 +1,7 @@
-/// \file Main.cpp
-/// \brief The main function of every test program: GoogleTest's, with one more option.
-///
-/// `--skip-code=N`: exit with N, not 0, when a test was skipped and none failed. ctest runs a suite
-/// in one process, and shows it as "Skipped" then, so that a skipped test is seen.
+// The main function of every test program: GoogleTest's, with one more option.
+//
+// `--skip-code=N`: exit with N, not 0, when a test was skipped and none failed. ctest runs a suite
+// in one process, and shows it as "Skipped" then, so that a skipped test is seen.
 
 #include <gtest/gtest.h>
 

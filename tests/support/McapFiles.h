@@ -1,14 +1,11 @@
 #pragma once
-/// \file McapFiles.h
-/// \brief Writes MCAP files byte by byte, as the format is published (mcap.dev).
+// Writes MCAP files byte by byte, as the format is published (mcap.dev).
 
 #include <lz4frame.h>
 #include <zlib.h>
 #include <zstd.h>
 
 #include <cstdint>
-#include <map>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,22 +1,17 @@
 #pragma once
-/// \file NcltSamples.h
-/// \brief Files of NCLT, byte by byte as in read_vel_sync.py and read_vel_hits.py of the dataset.
+// Files of NCLT, byte by byte as in read_vel_sync.py and read_vel_hits.py of the dataset.
 
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <string>
-#include <vector>
+
+#include "support/NumpyFiles.h"
 
 namespace testing_nclt {
 
-/// Little-endian value with this number of bytes.
-inline std::string little(std::uint64_t value, int bytes) {
-  std::string text;
-  for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i) & 0xff);
-  return text;
-}
+using polemcl::io::test::little;
 
 /// uint16 x y z in steps of 5 mm from -100 m, uint8 intensity, uint8 laser.
 inline std::string point(double x, double y, double z, int intensity = 7, int laser = 3) {

@@ -1,6 +1,5 @@
 #pragma once
-/// \file NumpyFiles.h
-/// \brief `.npy` and `.npz` bytes for the tests, written after their format documents.
+// `.npy` and `.npz` bytes for the tests, written after their format documents.
 
 #include <zlib.h>
 

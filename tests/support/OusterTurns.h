@@ -1,7 +1,6 @@
 #pragma once
-/// \file OusterTurns.h
-/// \brief A street of poles as the packets of an Ouster, byte by byte as its manual says, and the
-/// metadata of that LiDAR.
+// A street of poles as the packets of an Ouster, byte by byte as its manual says, and the
+// metadata of that LiDAR.
 
 #include "support/VelodynePackets.h"
 
@@ -39,10 +38,7 @@ inline std::uint32_t ousterRange(const std::vector<StreetPole>& poles, double x,
                cosine = std::cos(OusterModel::elevation(ring) * degree);
   const double fromX = x + OusterModel::origin * std::cos(yaw + encoder),
                fromY = y + OusterModel::origin * std::sin(yaw + encoder);
-  const double ground = slope < 0 ? streetSensorHeight / -slope : 1e9;
-  const double pole = rangeToPoles(poles, fromX, fromY, azimuth);
-  const bool hitsPole = pole < ground && streetSensorHeight + pole * slope < streetPoleTop;
-  const double level = hitsPole ? pole : ground;
+  const double level = rangeOfRay(rangeToPoles(poles, fromX, fromY, azimuth), slope);
   return level < 60 ? static_cast<std::uint32_t>(
                           std::lround((level / cosine + OusterModel::origin) * 1000))
                     : 0;

@@ -1,7 +1,6 @@
 #pragma once
-/// \file PoleCity.h
-/// \brief A city of poles, its imperfect map, and drives through it with simulated detections.
-/// Deterministic by seed. For tests and benchmarks.
+// A city of poles, its imperfect map, and drives through it with simulated detections.
+// Deterministic by seed. For tests and benchmarks.
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file PoleStreet.h
-/// \brief A street of poles with a drive through it, made of plain numbers, for tests.
+// A street of poles with a drive through it, made of plain numbers, for tests.
 
 #include <cmath>
 #include <memory>

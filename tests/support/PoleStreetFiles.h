@@ -1,7 +1,6 @@
 #pragma once
-/// \file PoleStreetFiles.h
-/// \brief A street of bare poles on flat ground, seen by an HDL-32E 1.0 m above it, as a scan
-/// folder.
+// A street of bare poles on flat ground, seen by an HDL-32E 1.0 m above it, as a scan
+// folder.
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +38,14 @@ inline double rangeToPoles(const std::vector<StreetPole>& poles, double x, doubl
   return nearest;
 }
 
+/// Range of a ray of this slope: that of the pole where it hits it, else of the ground, or
+/// infinity.
+inline double rangeOfRay(double pole, double slope) {
+  const double ground =
+      slope < 0 ? streetSensorHeight / -slope : std::numeric_limits<double>::infinity();
+  return pole < ground && streetSensorHeight + pole * slope < streetPoleTop ? pole : ground;
+}
+
 /// One revolution of the sensor at a pose: 32 beams, 0.2 degrees per step, no noise, 60 m.
 inline Points scanStreet(const std::vector<StreetPole>& poles, double x, double y, double yaw) {
   Points points;
@@ -48,10 +55,7 @@ inline Points scanStreet(const std::vector<StreetPole>& poles, double x, double 
     const double pole = rangeToPoles(poles, x, y, yaw + azimuth);
     for (int beam = 0; beam < 32; ++beam) {
       const double slope = std::tan((10.67 - beam * 41.34 / 31) * degree);
-      const double ground =
-          slope < 0 ? streetSensorHeight / -slope : std::numeric_limits<double>::infinity();
-      const bool hitsPole = pole < ground && streetSensorHeight + pole * slope < streetPoleTop;
-      const double rho = hitsPole ? pole : ground;
+      const double rho = rangeOfRay(pole, slope);
       if (!(rho < 60)) continue;
       points.push_back({static_cast<float>(rho * std::cos(azimuth)),
                         static_cast<float>(rho * std::sin(azimuth)),

@@ -1,8 +1,9 @@
 #pragma once
-/// \file Poles.h
-/// \brief Poles for tests: detections and poles of a map, and their comparison.
+// Poles for tests: detections and poles of a map, and their comparison.
 
 #include <gtest/gtest.h>
+
+#include <vector>
 
 #include <polemcl/core/common/Types.h>
 
@@ -31,14 +32,18 @@ inline MapPole mapPoleAt(double x, double y, double variance = 0.01) {
   return pole;
 }
 
-/// A pole of a map with another value in each field, so that none can stand for another.
-inline MapPole variedMapPole(double x, double y) {
-  MapPole pole = mapPoleAt(x, y);
+/// A pole with another value in each field, so that none can stand for another.
+template <class Pole>
+Pole varied(Pole pole) {
   pole.radius = 0.125;
   pole.bottom = 0.25;
   pole.top = 4.5;
   pole.confidence = 0.75;
   pole.covariance << 0.04, 0.01, 0.01, 0.09;
+  return pole;
+}
+inline MapPole variedMapPole(double x, double y) {
+  MapPole pole = varied(mapPoleAt(x, y));
   pole.count = 17;
   return pole;
 }
@@ -63,6 +68,12 @@ inline void expectSame(const PoleDetection& a, const PoleDetection& b) {
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.timeOffset, b.timeOffset);
   EXPECT_EQ(a.turnRate, b.turnRate);
+}
+
+template <class Pole>
+void expectSame(const std::vector<Pole>& a, const std::vector<Pole>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) expectSame(a[i], b[i]);
 }
 
 }  // namespace polemcl::tests

@@ -1,6 +1,5 @@
 #pragma once
-/// \file RayCast.h
-/// \brief Exact scans of a few simple solids, as an oracle: the source of every return is known.
+// Exact scans of a few simple solids, as an oracle: the source of every return is known.
 
 #include <algorithm>
 #include <optional>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file Refusal.h
-/// \brief Expectations of refusals: an Error with one line that says certain things.
+// Expectations of refusals: an Error with one line that says certain things.
 
 #include <gtest/gtest.h>
 

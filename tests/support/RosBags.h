@@ -1,6 +1,5 @@
 #pragma once
-/// \file RosBags.h
-/// \brief Writes ROS 2 bags byte by byte, as the formats are published.
+// Writes ROS 2 bags byte by byte, as the formats are published.
 
 #include <sqlite3.h>
 

@@ -1,6 +1,5 @@
 #pragma once
-/// \file SampleBatches.h
-/// \brief A small batch with all kinds of failures, with numbers that are easy to sum by hand.
+// A small batch with all kinds of failures, with numbers that are easy to sum by hand.
 
 #include <string>
 

@@ -1,13 +1,8 @@
 #pragma once
-/// \file SampleViews.h
-/// \brief A small drive to draw: along x from 0 to 20 m, four poles beside it.
-
-#include <cstdlib>
-#include <filesystem>
-#include <stdexcept>
-#include <string>
+// A small drive to draw: along x from 0 to 20 m, four poles beside it.
 
 #include "report/picture/MapView.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::report {
 
@@ -34,22 +29,5 @@ inline MapView smallDrive(double offset = 0.1, double turn = 0.01) {
   }
   return view;
 }
-
-/// A temporary folder for the files of one test.
-class TestFolder {
- public:
-  TestFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "polemcl_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no folder for the test");
-    m_path = name;
-  }
-  ~TestFolder() { std::filesystem::remove_all(m_path); }
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return m_path / name; }
-
- private:
-  std::filesystem::path m_path;
-};
 
 }  // namespace polemcl::report

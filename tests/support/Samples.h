@@ -1,28 +1,20 @@
 #pragma once
-/// \file Samples.h
-/// \brief Invented, plausible poles and clouds for the tests; and archives in memory.
+// Invented, plausible poles and clouds for the tests; and archives in memory.
 
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
-#include <unistd.h>
 
-#include <cstdint>
-#include <filesystem>
 #include <string>
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include "support/Poles.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::samples {
 
 /// \brief A detection with different values in all fields, to detect mix-ups.
 inline PoleDetection pole(double x, double y) {
-  PoleDetection p = tests::detectionAt(x, y);
-  p.radius = 0.125;
-  p.bottom = 0.25;
-  p.top = 3.5;
-  p.confidence = 0.75;
-  p.covariance << 0.04, 0.01, 0.01, 0.09;
+  PoleDetection p = tests::varied(tests::detectionAt(x, y));
   p.points = 42;
   return p;
 }
@@ -55,23 +47,5 @@ inline mrpt::serialization::CSerializable::Ptr objectFrom(const std::string& byt
   auto archive = mrpt::serialization::archiveFrom(memory);
   return archive.ReadObject();
 }
-
-/// \brief A temporary folder for one test.
-class Folder {
- public:
-  explicit Folder(const std::string& name)
-      : m_path(std::filesystem::temp_directory_path() /
-               ("polemcl_" + name + "_" + std::to_string(::getpid()))) {
-    std::filesystem::remove_all(m_path);
-    std::filesystem::create_directories(m_path);
-  }
-  ~Folder() { std::filesystem::remove_all(m_path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string operator/(const std::string& name) const { return (m_path / name).string(); }
-
- private:
-  std::filesystem::path m_path;
-};
 
 }  // namespace polemcl::samples

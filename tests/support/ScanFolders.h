@@ -1,6 +1,5 @@
 #pragma once
-/// \file ScanFolders.h
-/// \brief Tiny datasets for the tests of the programs.
+// Tiny datasets for the tests of the programs.
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file Scenes.h
-/// \brief Reads back the content of a scene.
+// Reads back the content of a scene.
 
 #include <mrpt/opengl/CCylinder.h>
 #include <mrpt/opengl/COpenGLScene.h>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file Sensors.h
-/// \brief Settings of LiDARs for tests.
+// Settings of LiDARs for tests.
 
 #include <cmath>
 #include <string>

@@ -2,21 +2,17 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CActionRobotMovement3D.h>
 #include <mrpt/obs/CObservationOdometry.h>
-#include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
 #include <fstream>
 
 #include "mrpt/rawlog/PoleSequence.h"
-#include "support/Refusal.h"
-#include "support/Samples.h"
-#include "support/TestClouds.h"
+#include "support/ExtractionSamples.h"
 
 namespace polemcl::tests::sequence {
 
@@ -64,15 +60,10 @@ inline CObservationPoles poles(double time, double x = 5) {
 /// The test place seen from (x, 0).
 inline CObservationPointCloud cloud(double time, double x) {
   const Eigen::Isometry3d T_robot_lidar(Eigen::Translation3d(x, 0, 1.2));
-  const auto cast =
-      samples::castScan(options().extraction.sensor, T_robot_lidar, samples::testPoles());
-  CObservationPointCloud observation;
+  CObservationPointCloud observation = *samples::observationOf(
+      samples::castScan(options().extraction.sensor, T_robot_lidar, samples::testPoles()), {});
+  observation.sensorLabel.clear();
   observation.timestamp = mrpt::Clock::fromDouble(time);
-  auto points = mrpt::maps::CPointsMapXYZI::Create();
-  points->resize(cast.x.size());
-  for (std::size_t i = 0; i < cast.x.size(); ++i)
-    points->setPointFast(i, cast.x[i], cast.y[i], cast.z[i]);
-  observation.pointcloud = points;
   return observation;
 }
 
@@ -90,7 +81,7 @@ inline std::string odometry(double time, const CPose2D& pose) {
 }
 
 struct Bench {
-  samples::Folder folder{"PoleSequence"};
+  testing_apps::TempFolder folder;
   std::string path = folder / "s.rawlog";
   PoleSequence read(const std::string& bytes, const SequenceOptions& o = options()) const {
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<long>(bytes.size()));

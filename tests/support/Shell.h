@@ -1,6 +1,5 @@
 #pragma once
-/// \file Shell.h
-/// \brief Runs commands of the shell, also on a terminal.
+// Runs commands of the shell, also on a terminal.
 
 #include <cstdio>
 #include <string>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file SimulatedScans.h
-/// \brief Scans of the simulated street with the visible poles.
+// Scans of the simulated street with the visible poles.
 
 #include <algorithm>
 #include <cmath>

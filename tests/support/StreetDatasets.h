@@ -1,6 +1,5 @@
 #pragma once
-/// \file StreetDatasets.h
-/// \brief Drives through a simulated street, written in the formats of datasets.
+// Drives through a simulated street, written in the formats of datasets.
 
 #include <cstdint>
 #include <set>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file StreetTest.h
-/// \brief Shared by the tests of pole-extract and pole-map: an imported street.
+// Shared by the tests of pole-extract and pole-map: an imported street.
 
 #include <functional>
 
@@ -37,20 +36,23 @@ class StreetTest : public testing::Test {
     polemcl::apps::importDataset(options);
   }
 
+  void importStreet(const std::string& name, std::size_t scans) {
+    writeStreet(folder / name, scans);
+    import(name);
+  }
+
   /// `pole-map build` of `in.rawlog` at its true poses: `map.polemap`.
   void buildAtTruth() const {
-    const Outcome built = runProgram(polemcl::apps::mapMain,
-                                     {"build", "--config", config(), "--input", at("in.rawlog"),
-                                      "--truth", at("in.tum"), "--output", at("map.polemap")});
-    ASSERT_EQ(built.code, 0) << built.err;
+    const Outcome built = succeeded(runProgram(
+        polemcl::apps::mapMain, {"build", "--config", config(), "--input", at("in.rawlog"),
+                                 "--truth", at("in.tum"), "--output", at("map.polemap")}));
   }
   /// The same without true poses: `street.polemap`, and its poses in `found.tum`.
   Outcome buildWithoutTruth(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments{
-        "build",    "--config",           config(),       "--input",      at("in.rawlog"),
-        "--output", at("street.polemap"), "--trajectory", at("found.tum")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(polemcl::apps::mapMain, arguments);
+    return runProgram(polemcl::apps::mapMain,
+                      {"build", "--config", config(), "--input", at("in.rawlog"), "--output",
+                       at("street.polemap"), "--trajectory", at("found.tum")},
+                      more);
   }
   /// Writes `fixes.csv`, a fix just after each true pose. The truth begins at (100, 50) of a map
   /// with the datum 48,9. \param along What the receiver says of the x of the truth.

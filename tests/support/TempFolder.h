@@ -1,17 +1,19 @@
 #pragma once
-/// \file TempFolder.h
-/// \brief A temporary folder for one test, and helpers for files and programs.
+// A temporary folder for one test, and helpers for files and programs.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "support/ExpectHas.h"
 
 namespace testing_apps {
 
@@ -60,6 +62,12 @@ inline std::vector<std::string> names(const fs::path& folder) {
   return result;
 }
 
+/// The folder of real data, or empty.
+inline fs::path dataFolder() {
+  const char* folder = std::getenv("POLEMCL_DATA");
+  return folder == nullptr ? fs::path() : fs::path(folder);
+}
+
 struct Outcome {
   int code = -1;
   std::string out, err;
@@ -67,7 +75,9 @@ struct Outcome {
 
 /// Runs a program in this process.
 inline Outcome runProgram(const std::function<int(int, const char* const*)>& program,
-                          const std::vector<std::string>& arguments) {
+                          std::vector<std::string> arguments,
+                          const std::vector<std::string>& more = {}) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
   std::vector<const char*> argv{"program"};
   for (const auto& argument : arguments) argv.push_back(argument.c_str());
   Outcome outcome;
@@ -79,17 +89,28 @@ inline Outcome runProgram(const std::function<int(int, const char* const*)>& pro
   return outcome;
 }
 
+/// The outcome of a run that must succeed.
+inline Outcome succeeded(const Outcome& outcome) {
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return outcome;
+}
+
 /// Checks for exit code 1 and one line on stderr with all of these words.
 inline void expectFailure(const Outcome& outcome, const std::vector<std::string>& words) {
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  for (const auto& word : words)
-    EXPECT_NE(outcome.err.find(word), std::string::npos) << word << " is not in: " << outcome.err;
+  for (const auto& word : words) EXPECT_HAS(outcome.err, word) << ", without " << word;
 }
 
 inline void expectUsageError(const Outcome& outcome) {
   EXPECT_EQ(outcome.code, 2) << outcome.err;
-  EXPECT_NE(outcome.err.find("--help"), std::string::npos) << outcome.err;
+  EXPECT_HAS(outcome.err, "--help");
 }
 
 }  // namespace testing_apps
+
+/// Skips the test when there is no real data.
+#define POLEMCL_NEEDS_DATA()                                                  \
+  if (testing_apps::dataFolder().empty()) {                                   \
+    GTEST_SKIP() << "POLEMCL_DATA is not set: real scans and published maps"; \
+  }

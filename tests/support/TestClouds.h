@@ -1,7 +1,6 @@
 #pragma once
-/// \file TestClouds.h
-/// \brief Clouds of an invented place, cast ray by ray: flat ground, vertical cylinders, a round
-/// wall.
+// Clouds of an invented place, cast ray by ray: flat ground, vertical cylinders, a round
+// wall.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include <polemcl/core/common/Types.h>
 #include "core/sensor/SensorModel.h"
+#include "support/Clouds.h"
 
 namespace polemcl::samples {
 
@@ -43,10 +42,7 @@ inline double castRay(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
   return nearest < 40 ? nearest : 0;
 }
 
-struct TestCloud {
-  std::vector<float> x, y, z;  ///< LiDAR frame
-  PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
-};
+using TestCloud = clouds::PointList;  ///< LiDAR frame
 
 /// \brief Unit direction of a beam in the LiDAR frame, and its start.
 inline std::pair<Eigen::Vector3d, Eigen::Vector3d> ray(const SensorModel& model, int row,
@@ -70,9 +66,7 @@ inline TestCloud castScan(const SensorOptions& options, const Eigen::Isometry3d&
       const double range = castRay(T_robot_lidar * start, T_robot_lidar.linear() * along, poles);
       if (range == 0) continue;
       const Eigen::Vector3d point = start + range * along;
-      cloud.x.push_back(static_cast<float>(point.x()));
-      cloud.y.push_back(static_cast<float>(point.y()));
-      cloud.z.push_back(static_cast<float>(point.z()));
+      cloud.add(point.x(), point.y(), point.z());
     }
   return cloud;
 }

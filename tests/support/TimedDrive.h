@@ -1,6 +1,5 @@
 #pragma once
-/// \file TimedDrive.h
-/// \brief A simulated drive whose poles are measured at known moments.
+// A simulated drive whose poles are measured at known moments.
 
 #include <cmath>
 #include <random>

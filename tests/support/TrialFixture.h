@@ -1,6 +1,5 @@
 #pragma once
-/// \file TrialFixture.h
-/// \brief Trials on a simulated drive.
+// Trials on a simulated drive.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -15,7 +14,6 @@
 
 namespace polemcl::test_trials {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 
@@ -42,24 +40,16 @@ class Trials : public testing::Test {
     return result;
   }
   Outcome run(const std::string& command, const Arguments& more = {}) const {
-    Arguments all{command,
-                  "--config",
-                  city.at("city.ini"),
-                  "--map",
-                  city.at("city.polemap"),
-                  "--input",
-                  city.at("drive.rawlog"),
-                  "--truth",
-                  city.at("drive.tum")};
-    all.insert(all.end(), more.begin(), more.end());
-    return runProgram(evalMain, all);
+    return runProgram(evalMain,
+                      {command, "--config", city.at("city.ini"), "--map", city.at("city.polemap"),
+                       "--input", city.at("drive.rawlog"), "--truth", city.at("drive.tum")},
+                      more);
   }
   /// What the command writes, the same on one thread as on all; `words` are in its text.
   nlohmann::json figures(const std::string& command, Arguments more, const std::string& words) {
     more.insert(more.end(), {"--seed", "3", "--json", city.at("j")});
     const auto once = [&] {
-      const auto outcome = run(command, more);
-      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      const Outcome outcome = succeeded(run(command, more));
       EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
       return readText(city.at("j"));
     };

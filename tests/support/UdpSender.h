@@ -1,6 +1,5 @@
 #pragma once
-/// \file UdpSender.h
-/// \brief UDP on the loopback without losses: packets wait until those before have been read.
+// UDP on the loopback without losses: packets wait until those before have been read.
 
 #include <arpa/inet.h>
 #include <sys/socket.h>

@@ -1,11 +1,9 @@
 #pragma once
-/// \file VelodynePackets.h
-/// \brief A street of poles as the packets of a VLP-16, byte by byte as its manual says, and a PCAP
-/// file of them.
+// A street of poles as the packets of a VLP-16, byte by byte as its manual says, and a PCAP
+// file of them.
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -22,10 +20,7 @@ void appendBytes(std::string& bytes, Number number) {
 
 /// The range of one firing in units of 2 mm; 0: nothing within 60 m.
 inline std::uint16_t firingRange(double pole, double elevation) {
-  const double slope = std::tan(elevation);
-  const double ground = slope < 0 ? streetSensorHeight / -slope : 1e9;
-  const bool hitsPole = pole < ground && streetSensorHeight + pole * slope < streetPoleTop;
-  const double rho = hitsPole ? pole : ground;
+  const double rho = rangeOfRay(pole, std::tan(elevation));
   return rho < 60 ? static_cast<std::uint16_t>(std::lround(rho / std::cos(elevation) / 0.002)) : 0;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
-/// \file WholeScan.h
-/// \brief Scan lines of all points of a cloud, those on the ground included.
+// Scan lines of all points of a cloud, those on the ground included.
 
 #include "core/extraction/scan_line/ScanLines.h"
 

@@ -1,6 +1,5 @@
 #pragma once
-/// \file Worlds.h
-/// \brief Simulated streets for tests.
+// Simulated streets for tests.
 
 #include <map>
 

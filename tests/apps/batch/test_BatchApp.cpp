@@ -13,12 +13,10 @@
 #include "support/BatchTestFiles.h"
 
 namespace polemcl::test_batch_app {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 const std::string program = std::string(POLEMCL_BIN_DIR) + "/pole-batch";
 
@@ -96,8 +94,6 @@ class BatchApp : public testing::Test {
 };
 
 TempFolder* BatchApp::s_folder = nullptr;
-
-}  // namespace
 
 TEST_F(BatchApp, ReportsAllRuns) {
   const auto results = resultsIn(*s_folder / "done");
@@ -185,8 +181,7 @@ TEST_F(BatchApp, FailedSessionsAreReportedAndStopNoOthers) {
   const std::string message = messageOf([&] { doBatch(options); });
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(message.find("4 of 14 tasks failed (run.kept.s2.00: "), std::string::npos) << message;
-  EXPECT_NE(message.find("with the tasks that need them, 4 are not done"), std::string::npos)
-      << message;
+  EXPECT_HAS(message, "with the tasks that need them, 4 are not done");
   EXPECT_NE(said.find("run.once.s2.00 failed: "), std::string::npos) << said;
   const auto results = resultsIn(*s_folder / "broken");
   EXPECT_EQ(results["failures"].size(), 4u);
@@ -314,13 +309,10 @@ TEST_F(BatchApp, RefusesWrongUsage) {
 }
 
 TEST_F(BatchApp, PrintsItsPlan) {
-  const auto outcome =
-      runProgram(batchMain, {(*s_folder / "street-batch.ini").string(), "--dry-run"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("run.once.s2.01\n  after poles.s2\n  after map.once.s0\n  $ "
-                             "pole-localize"),
-            std::string::npos)
-      << outcome.out;
+  const Outcome outcome =
+      succeeded(runProgram(batchMain, {(*s_folder / "street-batch.ini").string(), "--dry-run"}));
+  EXPECT_HAS(outcome.out,
+             "run.once.s2.01\n  after poles.s2\n  after map.once.s0\n  $ pole-localize");
 }
 
 TEST_F(BatchApp, AnInstalledBatchIsDoneByItsName) {
@@ -389,4 +381,5 @@ TEST_F(BatchApp, AFullDiskLosesNothing) {
   EXPECT_EQ(left("full"), left("done"));
 }
 
+}  // namespace
 }  // namespace polemcl::test_batch_app

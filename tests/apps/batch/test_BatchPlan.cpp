@@ -4,15 +4,12 @@
 
 #include "batch/BatchPlan.h"
 #include "support/BatchTestFiles.h"
-#include "support/ExpectHas.h"
 
 namespace polemcl::test_batch_plan {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 const std::string source = POLEMCL_SOURCE_DIR;
 
@@ -53,8 +50,6 @@ std::string argument(const std::vector<std::string>& command, const std::string&
 }
 
 using Names = std::vector<std::string>;
-
-}  // namespace
 
 TEST(BatchPlan, LocalizesInTheMapOfEarlierSessions) {
   const BatchPlan plan = planOf();
@@ -349,14 +344,13 @@ TEST(BatchPlan, NamesAllInputsThatAreMissing) {
   const std::string message = messageOf([] {
     planOf([](BatchSpec& spec) { spec.sessions[0].input = spec.sessions[2].input = "/not/there"; });
   });
-  EXPECT_NE(message.find("inputs of 2 sessions are missing: a: /not/there is not there; c: "
-                         "/not/there is not there"),
-            std::string::npos)
-      << message;
-  EXPECT_NE(messageOf([] {
-              planOf([](BatchSpec& spec) { spec.sessions[1].truthMap = "/not/there.npz"; });
-            }).find("b: /not/there.npz, its truth_map, is not there"),
-            std::string::npos);
+  EXPECT_HAS(
+      message,
+      "inputs of 2 sessions are missing: a: /not/there is not there; c: /not/there is not there");
+  EXPECT_HAS(messageOf([] {
+               planOf([](BatchSpec& spec) { spec.sessions[1].truthMap = "/not/there.npz"; });
+             }),
+             "b: /not/there.npz, its truth_map, is not there");
   // True poles that no map is scored against need not be there.
   EXPECT_NO_THROW(planOf([](BatchSpec& spec) { spec.sessions[0].truthMap = "/not/there.npz"; }));
   // Sessions that no configuration uses need not be there.
@@ -370,10 +364,8 @@ TEST(BatchPlan, TakesSessionsOfNcltAsItsDownloaderLaysThemOut) {
   const TempFolder data;
   const BatchSpec spec = readBatchSpec(source + "/config/batches/nclt.ini", data.path());
   const std::string message = messageOf([&] { planBatch(spec); });
-  EXPECT_NE(message.find("inputs of 27 sessions are missing: 2012-01-08: "), std::string::npos)
-      << message;
-  EXPECT_NE(message.find("2012-01-22 is not there; and so on; check --data"), std::string::npos)
-      << message;
+  EXPECT_HAS(message, "inputs of 27 sessions are missing: 2012-01-08: ");
+  EXPECT_HAS(message, "2012-01-22 is not there; and so on; check --data");
   for (const auto& session : spec.sessions)
     fs::create_directories(data / "velodyne_data" / session.name / "velodyne_sync");
   const BatchPlan plan = planBatch(spec);
@@ -420,9 +412,8 @@ TEST(BatchPlan, NamesWhereAFileIsMissingBeforeTheData) {
                            " is not there; name a file beside the batch, or an installed one",
                        0),
             0u);
-  EXPECT_NE(refusal("", "config = nclt.ini\nset = filter.particles=-1\nsessions = later\n")
-                .find("batch a: [setting one] "),
-            std::string::npos);
+  EXPECT_HAS(refusal("", "config = nclt.ini\nset = filter.particles=-1\nsessions = later\n"),
+             "batch a: [setting one] ");
   EXPECT_EQ(refusal("published_sessions = mine.csv\n", "config = nclt.ini\nsessions = later\n")
                 .rfind("batch a: [batch] published_sessions: ", 0),
             0u);
@@ -471,8 +462,7 @@ TEST(BatchPlan, SurvivesItsFile) {
   EXPECT_EQ(read.experiments[1].map, plan.experiments[1].map);
   EXPECT_EQ(read.experiments[1].score, plan.experiments[1].score);
   writeText(folder / "plan.json", readText(folder / "plan.json").substr(0, 100));
-  EXPECT_NE(messageOf([&] { readPlan(folder / "plan.json"); }).find("is no plan of a batch"),
-            std::string::npos);
+  EXPECT_REFUSED(readPlan(folder / "plan.json"), "is no plan of a batch");
 }
 
 TEST(BatchPlan, OfSomebodyElseCannotDoHarm) {
@@ -497,4 +487,5 @@ TEST(BatchPlan, OfSomebodyElseCannotDoHarm) {
   EXPECT_HAS(messageOf([&] { readPlan(folder / "plan.json"); }), "nested more than 64");
 }
 
+}  // namespace
 }  // namespace polemcl::test_batch_plan

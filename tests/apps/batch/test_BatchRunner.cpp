@@ -4,19 +4,16 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <set>
 
 #include "batch/BatchRunner.h"
 #include "support/BatchTestFiles.h"
 #include "support/DiskCalls.h"
 
 namespace polemcl::test_batch_runner {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 using Names = std::vector<std::string>;
 using State = BatchFolder::State;
@@ -81,8 +78,6 @@ class BatchRunner : public testing::Test {
   std::map<std::string, std::string> m_failures;
   BatchProgress m_last;
 };
-
-}  // namespace
 
 TEST_F(BatchRunner, DoesWhatIsNeededFirst) {
   add("a", {{"write", "out", "A"}});
@@ -283,15 +278,10 @@ TEST(BatchFolder, IsForOneBatchAlone) {
     BatchFolder first(path);
     first.take("one", false);
     first.store(plan, folder / "batch.ini");
-    EXPECT_NE(messageOf([&] { BatchFolder(path).take("one", true); }).find("is under way"),
-              std::string::npos);
+    EXPECT_REFUSED(BatchFolder(path).take("one", true), "is under way");
   }
-  EXPECT_NE(messageOf([&] { BatchFolder(path).take("one", false); }).find("--resume"),
-            std::string::npos);
-  EXPECT_NE(messageOf([&] {
-              BatchFolder(path).take("two", true);
-            }).find("holds the batch 'one', not 'two'"),
-            std::string::npos);
+  EXPECT_REFUSED(BatchFolder(path).take("one", false), "--resume");
+  EXPECT_REFUSED(BatchFolder(path).take("two", true), "holds the batch 'one', not 'two'");
   EXPECT_NO_THROW(BatchFolder(path).take("one", true));
   // Cut short before its plan was written, and one that lost it.
   fs::remove(path / "plan.json");
@@ -304,12 +294,8 @@ TEST(BatchFolder, IsForOneBatchAlone) {
 TEST(BatchFolder, LeavesForeignFoldersAlone) {
   const TempFolder folder;
   writeText(folder / "letter.txt", "Dear");
-  EXPECT_NE(messageOf([&] { BatchFolder(folder.path()).take("one", true); }).find("holds no batch"),
-            std::string::npos);
-  EXPECT_NE(messageOf([&] {
-              BatchFolder(folder / "letter.txt").take("one", true);
-            }).find("holds no batch"),
-            std::string::npos);
+  EXPECT_REFUSED(BatchFolder(folder.path()).take("one", true), "holds no batch");
+  EXPECT_REFUSED(BatchFolder(folder / "letter.txt").take("one", true), "holds no batch");
   EXPECT_EQ(readText(folder / "letter.txt"), "Dear");
 }
 
@@ -333,4 +319,5 @@ TEST_F(BatchRunner, SaysWhichBuildDidWhatIsDoneAgain) {
   EXPECT_EQ(run(1), (Names{"a", "b"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_batch_runner

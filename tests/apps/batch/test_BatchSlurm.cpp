@@ -5,15 +5,12 @@
 
 #include "batch/BatchSlurm.h"
 #include "support/BatchTestFiles.h"
-#include "support/ExpectHas.h"
 
 namespace polemcl::test_batch_slurm {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// Two tasks are given to an `sbatch` that takes them, and to a `squeue` that fails `failures`
 /// times before it says that nothing is queued.
@@ -51,8 +48,6 @@ class BatchSlurm : public testing::Test {
   TempFolder m_folder;
 };
 
-}  // namespace
-
 TEST_F(BatchSlurm, WaitsWhileTheControllerDoesNotAnswer) {
   runWith(3);
   EXPECT_EQ(asked(), 4u);
@@ -78,4 +73,5 @@ TEST_F(BatchSlurm, SaysWhichJobsMayRunWhenTheNextIsRefused) {
   EXPECT_REFUSED(runWith(0), "sbatch failed", "before --resume: scancel 7");
 }
 
+}  // namespace
 }  // namespace polemcl::test_batch_slurm

@@ -2,15 +2,12 @@
 
 #include "batch/BatchSpec.h"
 #include "support/BatchTestFiles.h"
-#include "support/ExpectHas.h"
 
 namespace polemcl::test_batch_spec {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 BatchSpec read(const std::string& text, const fs::path& data = {}) {
   const TempFolder folder;
@@ -24,8 +21,6 @@ std::string refusal(const std::string& text) {
 
 const std::string sessions = "[sessions]\nnames = a b c\ninput = x\n";
 const std::string configuration = "[setting one]\nconfig = c.ini\n";
-
-}  // namespace
 
 TEST(BatchSpec, ReadsSessionsWithTheirDifferences) {
   const BatchSpec spec = read(
@@ -283,4 +278,5 @@ TEST(BatchSpec, WhatASessionSetsComesAfterWhatAllSet) {
             (std::vector<std::string>{"world.seed=5", model, "world.seed=6"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_batch_spec

@@ -5,12 +5,10 @@
 #include "support/StreetDatasets.h"
 
 namespace polemcl::test_paper_batches {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// The batches of the paper's tables, from config/batches/, on short simulated drives in the format
 /// of each dataset. They are cut down to fewer sessions and one run, and nothing else.
@@ -98,8 +96,6 @@ class PaperBatches : public testing::Test {
   std::string report;
 };
 
-}  // namespace
-
 TEST_F(PaperBatches, TableOneOfNclt) {
   auto options = street("hdl32e", 0.86, 60);
   options.upsideDown = true;
@@ -183,4 +179,5 @@ TEST_F(PaperBatches, TableFourKitti) {
               "polemcl, paper-mode", "polemcl, ours", "polemcl, ours-strict"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_paper_batches

@@ -1,20 +1,17 @@
-/// \file test_AllocationLimit.cpp
-/// \brief Programs take no memory for what a rawlog only claims to hold.
+// Programs take no memory for what a rawlog only claims to hold.
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
-#include "support/ExpectHas.h"
 #include "support/Samples.h"
 #include "support/Shell.h"
 
 namespace polemcl::test_allocation_limit {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 const fs::path bin = POLEMCL_BIN_DIR;
 
@@ -36,8 +33,6 @@ void expectRefused(const mrpt::obs::CObservation& observation, const std::string
   EXPECT_EQ(outcome.code, 1) << outcome.out;
   EXPECT_HAS(outcome.out, "forged.rawlog: truncated: the file ends inside an object");
 }
-
-}  // namespace
 
 // Without the limit, MRPT asks for the memory: the program has it, or ends with std::bad_alloc or
 // SIGSEGV.
@@ -71,4 +66,5 @@ TEST_F(AllocationLimit, FalseNumbersOfBeams) {
   expectRefused(scan, number(41), number(0x7fffffff));
 }
 
+}  // namespace
 }  // namespace polemcl::test_allocation_limit

@@ -9,14 +9,12 @@
 #include <polemcl/core/common/Types.h>
 #include "cli/CommandLine.h"
 #include "cli/Version.h"
-#include "support/ExpectHas.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_command_line {
+namespace {
 
 using namespace polemcl::apps;
-
-namespace {
 
 struct Result {
   int code = -1;
@@ -45,8 +43,6 @@ Result runWith(
   result.err = testing::internal::GetCapturedStderr();
   return result;
 }
-
-}  // namespace
 
 TEST(CommandLine, RunsTheWorkAndReturnsZero) {
   const auto result = runWith({"--input", "a", "--radius", "2.5"});
@@ -163,4 +159,5 @@ TEST(CommandLine, MessagesHoldNoRawBytes) {
   EXPECT_EQ(oneLine("cut \xe2\x80"), "cut ??");
 }
 
+}  // namespace
 }  // namespace polemcl::test_command_line

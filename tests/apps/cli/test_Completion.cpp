@@ -1,5 +1,4 @@
-/// \file test_Completion.cpp
-/// \brief The completion in bash, which asks the programs.
+// The completion in bash, which asks the programs.
 
 #include <gtest/gtest.h>
 
@@ -8,10 +7,9 @@
 #include "support/Shell.h"
 
 namespace polemcl::test_completion {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 const fs::path bin = POLEMCL_BIN_DIR;
 
@@ -30,8 +28,6 @@ std::string offered(const std::string& words) {
   EXPECT_EQ(outcome.code, 0) << words;
   return outcome.out;
 }
-
-}  // namespace
 
 TEST(Completion, OfSubcommandsAndOptions) {
   EXPECT_EQ(offered("pole-map b"), "build");
@@ -63,4 +59,5 @@ TEST(Completion, OfFilesFoldersAndSettings) {
   EXPECT_EQ(offered("pole-eval map --radius ''"), "");
 }
 
+}  // namespace
 }  // namespace polemcl::test_completion

@@ -11,10 +11,9 @@
 #include "cli/Failure.h"
 
 namespace polemcl::test_failure {
+namespace {
 
 using namespace polemcl::apps;
-
-namespace {
 
 const std::string kNoMemory =
     "there is not enough memory; end other programs, or raise its limit (ulimit -v)";
@@ -24,8 +23,6 @@ void endBy(const std::function<void()>& work) noexcept {
   endUncaughtInOneLine("/usr/bin/pole-test");
   work();
 }
-
-}  // namespace
 
 TEST(Failure, SaysWhatTheMachineLacks) {
   EXPECT_EQ(reasonOf(std::bad_alloc()), kNoMemory);
@@ -55,4 +52,5 @@ TEST(Failure, OneLineIsEnough) {
   EXPECT_EXIT(endBy(twice), testing::ExitedWithCode(exitFailed), "^pole-test: the first\n$");
 }
 
+}  // namespace
 }  // namespace polemcl::test_failure

@@ -1,5 +1,4 @@
-/// \file test_HelpTexts.cpp
-/// \brief What `--help` says of every program and subcommand, and that its examples can be typed.
+// What `--help` says of every program and subcommand, and that its examples can be typed.
 
 #include <gtest/gtest.h>
 
@@ -21,15 +20,13 @@
 #include "localize/LocalizeApp.h"
 #include "map/MapApp.h"
 #include "simulate/SimulateApp.h"
-#include "support/ExpectHas.h"
 #include "support/Shell.h"
 
 namespace polemcl::test_help_texts {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 using Words = std::vector<std::string>;
 
@@ -84,8 +81,6 @@ const std::map<std::string, std::string>& helps() {
   }();
   return all;
 }
-
-}  // namespace
 
 TEST(HelpTexts, ProgramsAnswerInTheirNames) {
   for (const auto& [name, main] : kPrograms) {
@@ -197,4 +192,5 @@ Options:
   EXPECT_THROW(app.parse("--kind 1 in.rawlog", false), CLI::ValidationError);
 }
 
+}  // namespace
 }  // namespace polemcl::test_help_texts

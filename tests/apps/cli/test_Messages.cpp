@@ -1,5 +1,4 @@
-/// \file test_Messages.cpp
-/// \brief What programs write on a terminal, elsewhere, with `--quiet` and with `--verbose`.
+// What programs write on a terminal, elsewhere, with `--quiet` and with `--verbose`.
 
 #include <gtest/gtest.h>
 
@@ -9,11 +8,10 @@
 #include "support/Shell.h"
 
 namespace polemcl::test_messages {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 const std::string bin = POLEMCL_BIN_DIR;
 const std::string red = "\033[31m", green = "\033[32m", end = "\033[0m";
@@ -29,8 +27,6 @@ std::string simulation(const TempFolder& folder, const std::string& more = "") {
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
-
-}  // namespace
 
 TEST(Messages, ErrorsAreRedOnATerminalOnly) {
   if (!terminalsExist()) GTEST_SKIP() << "no pseudo terminal: is /dev/pts mounted?";
@@ -89,4 +85,5 @@ TEST(Messages, WarningsNameTheProgram) {
   EXPECT_TRUE(has(warningLine("pole-map", "old"), "warning:"));
 }
 
+}  // namespace
 }  // namespace polemcl::test_messages

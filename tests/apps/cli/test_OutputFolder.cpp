@@ -5,12 +5,11 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_output_folder {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 
-namespace {
 class OutputFolderTest : public testing::Test {
  protected:
   OutputFolder open(const std::string& name) {
@@ -23,8 +22,6 @@ class OutputFolderTest : public testing::Test {
   std::string parent() const { return folder.path().filename(); }
   TempFolder folder;
 };
-}  // namespace
-
 TEST_F(OutputFolderTest, AppearsOnlyWhenCommitted) {
   {
     OutputFolder out = open("out");
@@ -143,4 +140,5 @@ TEST_F(OutputFolderTest, RefusesAMissingParent) {
   EXPECT_NE(refusal("missing/out").find("cannot be created"), std::string::npos);
 }
 
+}  // namespace
 }  // namespace polemcl::test_output_folder

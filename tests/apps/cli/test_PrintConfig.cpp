@@ -7,15 +7,13 @@
 #include "cli/CommandLine.h"
 #include "cli/Settings.h"
 #include "core/common/Binder.h"
-#include "support/ExpectHas.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_print_config {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// A program that needs a file and settings, both itself and below a subcommand; prints "worked".
 Outcome run(const std::vector<std::string>& arguments, bool takesConfig = true) {
@@ -36,18 +34,15 @@ Outcome run(const std::vector<std::string>& arguments, bool takesConfig = true) 
 
 const std::string kKitti = std::string(POLEMCL_SOURCE_DIR) + "/config/kitti.ini";
 
-}  // namespace
-
 TEST(PrintConfig, PrintsAndEndsWithoutTheOtherArguments) {
-  const Outcome result = run({"--config", kKitti, "--print-config"});
-  EXPECT_EQ(result.code, 0) << result.err;
+  const Outcome result = succeeded(run({"--config", kKitti, "--print-config"}));
   EXPECT_EQ(result.out, settingsText(loadSettings(kKitti), Tier::tuning));
   EXPECT_EQ(result.err, "");
 }
 
 TEST(PrintConfig, PrintsTheExpertSettingsWithAll) {
-  const Outcome result = run({"--print-config", "--all", "--config", kKitti, "--input", "a"});
-  EXPECT_EQ(result.code, 0) << result.err;
+  const Outcome result =
+      succeeded(run({"--print-config", "--all", "--config", kKitti, "--input", "a"}));
   EXPECT_EQ(result.out, settingsText(loadSettings(kKitti)));
 }
 
@@ -78,4 +73,5 @@ TEST(PrintConfig, StandsInTheHelp) {
   EXPECT_EQ(run({"--help"}, false).out.find("--print-config"), std::string::npos);
 }
 
+}  // namespace
 }  // namespace polemcl::test_print_config

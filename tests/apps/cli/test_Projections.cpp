@@ -8,12 +8,10 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_projections {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using testing_apps::messageOf;
-
-namespace {
 
 constexpr double kDegree = M_PI / 180;
 
@@ -44,8 +42,6 @@ const std::vector<io::Datum> datums{
     {42.293227, -83.709657, 0}, {0, 0, 0},        {50.7, 7.1, 90},
     {-33.9, 151.2, -137.5},     {78.2, 15.6, 12}, {36.37, 127.36, 1},
     {1e-7, -1e-7, 0},           {90, 0, 0},       {-90, 12, 45}};
-
-}  // namespace
 
 // Against Krüger's series.
 TEST(CoordinateSystem, KnowsUtm) {
@@ -89,4 +85,5 @@ TEST(MapPlane, RefusesPlacesFarFromTheDatum) {
   EXPECT_HAS(messageOf([&] { plane.place({8, -50}); }), "is not on the same map");
 }
 
+}  // namespace
 }  // namespace polemcl::test_projections

@@ -1,16 +1,13 @@
 #include <polemcl/core/common/Types.h>
 #include "cli/Settings.h"
-#include "support/ExpectHas.h"
 #include "support/Refusal.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_settings {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 std::vector<fs::path> configurations() {
   const std::vector<std::string> others{"batches", "live", "mrpt"};  // hold no settings of ours
@@ -34,8 +31,6 @@ std::string errorOf(const std::string& ini) {
   writeText(folder / "a.ini", ini);
   return messageOf([&] { loadSettings((folder / "a.ini").string()); });
 }
-
-}  // namespace
 
 TEST(Settings, EveryConfigurationLoadsAndSurvivesSaving) {
   const auto files = configurations();
@@ -144,4 +139,5 @@ TEST(Settings, RefusalsNameFileSectionAndKey) {
   EXPECT_HAS(messageOf([] { loadSettings("no/such/file.ini"); }), "no/such/file.ini");
 }
 
+}  // namespace
 }  // namespace polemcl::test_settings

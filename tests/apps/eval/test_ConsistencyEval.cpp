@@ -1,12 +1,10 @@
 #include "support/EvalTest.h"
 
 namespace polemcl::test_consistency_eval {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 const std::string covHeader = "scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw\n";
 
@@ -29,8 +27,6 @@ class ConsistencyEval : public EvalTest {
     return all;
   }
 };
-
-}  // namespace
 
 TEST_F(ConsistencyEval, LeavesOutWhatComesBeforeConvergence) {
   writeCov("run_00_cov.csv", 30, 0.1, 5);  // 25 m² / 0.01 before, 1 after
@@ -100,4 +96,5 @@ TEST_F(ConsistencyEval, RefusesWhatDoesNotFitTogether) {
   expectUsageError(run({"consistency", "--truth", truth}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_consistency_eval

@@ -5,12 +5,10 @@
 #include "support/EvalTest.h"
 
 namespace polemcl::test_eval_app {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class EvalApp : public EvalTest {
  protected:
@@ -34,8 +32,6 @@ class EvalApp : public EvalTest {
     return arguments;
   }
 };
-
-}  // namespace
 
 TEST(FiguresText, IsFilledIn) {
   const Json json{{"a", 1.25}, {"n", 7}, {"none", nullptr}, {"word", "slip"}, {"list", {1, 2}}};
@@ -78,9 +74,8 @@ TEST_F(EvalApp, ScoresAMapOneToOneWithinARadius) {
 }
 
 TEST_F(EvalApp, PrintsThePublishedScores) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
-  const auto published = fs::path(data) / "published";
+  POLEMCL_NEEDS_DATA();
+  const auto published = dataFolder() / "published";
   Arguments arguments{"map", "--truth", (published / "nclt_truth.npz").string(), "--map",
                       (published / "nclt_map_8_0.50_0.08.npz").string()};
   const auto outcome = run(arguments);
@@ -125,10 +120,9 @@ TEST_F(EvalApp, EvaluatesPerMetre) {
 }
 
 TEST_F(EvalApp, DrawsSceneAndPicture) {
-  const auto outcome =
-      run(trajectory("truth.tum", {"--map", at("map.csv"), "--scene", at("run.3Dscene"), "--png",
-                                   at("run.png"), "--quiet"}));
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome =
+      succeeded(run(trajectory("truth.tum", {"--map", at("map.csv"), "--scene", at("run.3Dscene"),
+                                             "--png", at("run.png"), "--quiet"})));
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(readText(at("run.png")).substr(1, 3), "PNG");
   EXPECT_GT(fs::file_size(at("run.3Dscene")), 1000u);
@@ -180,4 +174,5 @@ TEST_F(EvalApp, WrongUsage) {
     expectUsageError(run(wrong));
 }
 
+}  // namespace
 }  // namespace polemcl::test_eval_app

@@ -2,12 +2,10 @@
 #include "support/EvalTest.h"
 
 namespace polemcl::test_extraction_eval {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class ExtractionEval : public EvalTest {
  protected:
@@ -53,8 +51,6 @@ class ExtractionEval : public EvalTest {
   }
 };
 
-}  // namespace
-
 TEST_F(ExtractionEval, DetectionsAreScoredAgainstTheLabels) {
   // In the scans' frame pole 1 is at (10, 0), pole 2 at (0, 3): 3 cm beyond and 4 cm left of the
   // first, exactly at the second, which is not visible, and one where nothing is.
@@ -79,9 +75,7 @@ TEST_F(ExtractionEval, DetectionsAreScoredAgainstTheLabels) {
   for (const auto& [key, value] : expected) EXPECT_NEAR(score[key], value, 1e-9) << key;
   EXPECT_EQ(readText(at("v.csv")), "id,x,y,radius,top,scans\n1,5.0000,10.0000,0.1000,4.0000,2\n");
   const std::string text = run(command).out;
-  EXPECT_NE(text.find("\nprecision 0.6667  recall 1.0000\ncentre error: median 2.5  mean 2.5  "),
-            std::string::npos)
-      << text;
+  EXPECT_HAS(text, "\nprecision 0.6667  recall 1.0000\ncentre error: median 2.5  mean 2.5  ");
 }
 
 TEST_F(ExtractionEval, ThePolesOfTheMapAreSeenFromWhateverFrameTheCloudHas) {
@@ -113,8 +107,7 @@ TEST_F(ExtractionEval, RefusesScansThatDoNotBelongToThePoles) {
 }
 
 TEST_F(ExtractionEval, PolesOfAStreetAreFoundAgain) {
-  writeStreet(folder / "street", 9);
-  import("street");
+  importStreet("street", 9);
   ExtractOptions options;
   options.input = folder / "street.rawlog";
   options.output = folder / "poles.rawlog";
@@ -153,8 +146,7 @@ TEST_F(ExtractionEval, RepeatabilityRefusesWhatCannotBeCompared) {
   writeAlike("p.rawlog", {1, 2, 3, 4, 5}, {});
   writeWay("short.tum", 5);
   writeWay("t.tum", 6);
-  writeStreet(folder / "street", 2);
-  import("street");
+  importStreet("street", 2);
   expectRefusals({
       {repeatability("p.rawlog", "short.tum"), {at("short.tum"), "5.000000 s", "scan 4"}},
       {repeatability("p.rawlog", "t.tum"), {at("p.rawlog"), "5 scans"}},
@@ -179,4 +171,5 @@ TEST_F(ExtractionEval, TurnedScansOfAStreetHaveTheSamePoles) {
   expectUsageError(run(rotation("p.rawlog", "0")));
 }
 
+}  // namespace
 }  // namespace polemcl::test_extraction_eval

@@ -11,12 +11,10 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_labelled_features {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// Rows "name,number,…" of a table of fitted weights; the head and comments are left out.
 std::map<std::string, std::vector<double>> weightsOf(const std::string& file) {
@@ -49,8 +47,6 @@ class LabelledFeatures : public StreetTest {
   AllSettings m_settings;
   FeaturesOptions m_options;
 };
-
-}  // namespace
 
 TEST_F(LabelledFeatures, TruePolesLabelWhatIsNearThem) {
   const FeaturesSummary summary = writeFeatures(m_options, m_settings);
@@ -123,4 +119,5 @@ TEST_F(LabelledFeatures, FeaturesNeedPosesAndTheLidarsOwnFrame) {
   EXPECT_THROW(writeFeatures(m_options, m_settings), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_labelled_features

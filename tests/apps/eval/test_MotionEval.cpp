@@ -4,12 +4,10 @@
 #include "support/EvalTest.h"
 
 namespace polemcl::test_motion_eval {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 constexpr double kStep = 0.4, kTurn = 0.02;
 
@@ -61,13 +59,10 @@ class MotionEvalTest : public EvalTest {
     return {"motion", "--poles", at("p.rawlog"), "--truth", at("t.tum"), "--every", every};
   }
   void expectText(const std::string& words, const std::string& every = "4") const {
-    const auto outcome = run(motion(every));
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome = succeeded(run(motion(every)));
     EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
   }
 };
-
-}  // namespace
 
 TEST_F(MotionEvalTest, PolesTellTheMotionWhateverTruthAndOdometrySay) {
   writeDrive(13);
@@ -117,4 +112,5 @@ TEST_F(MotionEvalTest, RefusesWhatCannotBeCompared) {
   expectUsageError(run(motion("0")));
 }
 
+}  // namespace
 }  // namespace polemcl::test_motion_eval

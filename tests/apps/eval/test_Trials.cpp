@@ -1,7 +1,6 @@
 #include "support/TrialFixture.h"
 
 namespace polemcl::test_trials {
-
 namespace {
 
 /// A trial of 1 m and 0.5 s a scan. Each letter is a scan: `o` ok, `d` degraded, `l` lost, `a`
@@ -38,8 +37,6 @@ TrialOutcome judged(const std::string& letters, std::size_t begin = 0, std::size
 double metres(const std::optional<Delay>& delay) {
   return delay ? delay->metres : -1;
 }
-
-}  // namespace
 
 TEST(TrialOutcomes, SayWhenWhatCameToBe) {
   const TrialOutcome start = judged("-lAaDOodo");
@@ -280,4 +277,5 @@ TEST_F(FaultTrials, TheProgramListsWhatFailed) {
   EXPECT_EQ(json["passed"].get<int>() + json["failed"].size(), 3u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_trials

@@ -1,6 +1,5 @@
 #include <mrpt/obs/CActionRobotMovement2D.h>
 
-#include <limits>
 #include <map>
 
 #include <polemcl/core/common/Types.h>
@@ -13,12 +12,10 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_extract_app {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 struct CsvPole {
   std::size_t scan;
@@ -49,20 +46,15 @@ std::vector<CsvPole> readCsv(const fs::path& file) {
 class ExtractApp : public StreetTest {
  protected:
   Outcome run(std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments{"--config",      config(),   "--input",
-                                       at("in.rawlog"), "--output", at("poles.rawlog")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(extractMain, arguments);
+    return runProgram(
+        extractMain,
+        {"--config", config(), "--input", at("in.rawlog"), "--output", at("poles.rawlog")}, more);
   }
 };
 
-}  // namespace
-
 TEST_F(ExtractApp, FindsThePolesOfEveryScan) {
-  writeStreet(folder / "in", 4);
-  import("in");
-  const auto outcome = run({"--csv", at("poles.csv")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  importStreet("in", 4);
+  const Outcome outcome = succeeded(run({"--csv", at("poles.csv")}));
   EXPECT_NE(outcome.out.find("in 4 scans"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("candidates: "), std::string::npos) << outcome.out;
 
@@ -83,20 +75,17 @@ TEST_F(ExtractApp, FindsThePolesOfEveryScan) {
 }
 
 TEST_F(ExtractApp, SaysWhenNoScanHasAPole) {
-  writeStreet(folder / "in", 2);
-  import("in");
+  importStreet("in", 2);
   EXPECT_EQ(run().err.find("warning"), std::string::npos);
-  const auto outcome = run({"--quiet", "--set", "scan_line.min_height_m=50"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--quiet", "--set", "scan_line.min_height_m=50"}));
   EXPECT_EQ(outcome.err, "pole-extract: warning: " + at("in.rawlog") +
                              ": no pole in any of 2 scans: check [sensor] and [extraction]\n");
 }
 
 TEST_F(ExtractApp, TheRangeImageMethodFitsTheSensorByItself) {
-  writeStreet(folder / "in", 4);
-  import("in");
-  const auto outcome = run({"--csv", at("poles.csv"), "--set", "extraction.method=range_image"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  importStreet("in", 4);
+  const Outcome outcome =
+      succeeded(run({"--csv", at("poles.csv"), "--set", "extraction.method=range_image"}));
   // Rows and borders of another LiDAR find nothing in these scans.
   EXPECT_GE(readCsv(folder / "poles.csv").size(), 12u);
   const auto kitti =
@@ -106,8 +95,7 @@ TEST_F(ExtractApp, TheRangeImageMethodFitsTheSensorByItself) {
 }
 
 TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
-  writeStreet(folder / "in", 2);
-  import("in");
+  importStreet("in", 2);
   const std::vector<std::string> arguments{"--config",      config(),       "--input",
                                            at("in.rawlog"), "--output",     at("poles.rawlog"),
                                            "--png",         at("scan.png"), "--png-scan"};
@@ -116,8 +104,7 @@ TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
     all.push_back(scan);
     return runProgram(extractMain, all);
   };
-  const auto outcome = draw("1");
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(draw("1"));
   EXPECT_EQ(readText(folder / "scan.png").substr(1, 3), "PNG");
   expectFailure(draw("2"), {at("in.rawlog"), "no scan 2", "there are 2"});
   expectFailure(runProgram(extractMain, {"--config", config(), "--input", at("poles.rawlog"),
@@ -126,8 +113,7 @@ TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
 }
 
 TEST_F(ExtractApp, PictureAndTableAppearWithTheRawlog) {
-  writeStreet(folder / "in", 2);
-  import("in");
+  importStreet("in", 2);
   const testing_disk::DiskCalls calls;
   ASSERT_EQ(run({"--csv", at("poles.csv"), "--png", at("scan.png")}).code, 0);
   EXPECT_EQ(calls.of("rename"),
@@ -136,16 +122,14 @@ TEST_F(ExtractApp, PictureAndTableAppearWithTheRawlog) {
 }
 
 TEST_F(ExtractApp, DrawsTheStepsOfTheRangeImageMethodOnly) {
-  writeStreet(folder / "in", 1);
-  import("in");
+  importStreet("in", 1);
   const std::vector<std::string> arguments{"--config",      config(),       "--input",
                                            at("in.rawlog"), "--output",     at("poles.rawlog"),
                                            "--range-image", at("range.png")};
   expectFailure(runProgram(extractMain, arguments), {"--range-image", "method = range_image"});
   auto all = arguments;
   all.insert(all.end(), {"--set", "extraction.method=range_image"});
-  const auto outcome = runProgram(extractMain, all);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runProgram(extractMain, all));
   EXPECT_EQ(readText(folder / "range.png").substr(1, 3), "PNG");
 }
 
@@ -154,10 +138,9 @@ TEST_F(ExtractApp, KeepsMotionsTimesAndSensorPose) {
   import("in", true, "0.5 0 0 90 0 0");
   // What scales covariances is applied by whoever localizes, not here too.
   writeText(folder / "factor.ini", readText(config()) + "[motion]\ncovariance_factor = 4\n");
-  const auto outcome =
-      runProgram(extractMain, {"--config", at("factor.ini"), "--input", at("in.rawlog"), "--output",
-                               at("poles.rawlog"), "--quiet"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome =
+      succeeded(runProgram(extractMain, {"--config", at("factor.ini"), "--input", at("in.rawlog"),
+                                         "--output", at("poles.rawlog"), "--quiet"}));
   EXPECT_EQ(outcome.out, "");
   RawlogReader before(at("in.rawlog")), after(at("poles.rawlog"));
   RawlogEntry scan, poles;
@@ -235,8 +218,7 @@ TEST_F(ExtractApp, ScansWithoutPointsKeepTheirPlace) {
   writeStreet(folder / "in", 3);
   writeBin(folder / "in" / "velodyne" / scanName(1), {{0, 0, 0, 0}, {0, 0, 0, 1}});
   import("in", false);  // nobody looked inside so far
-  const auto outcome = run({"--csv", at("poles.csv")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--csv", at("poles.csv")}));
   EXPECT_NE(outcome.out.find("scans without a valid point: 1"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("invalid 2"), std::string::npos) << outcome.out;
   std::map<std::size_t, int> perScan;
@@ -262,8 +244,7 @@ TEST_F(ExtractApp, RefusesMissingFiles) {
 }
 
 TEST_F(ExtractApp, RefusesATruncatedRawlogUnlessAllowed) {
-  writeStreet(folder / "in", 3);
-  import("in");
+  importStreet("in", 3);
   fs::resize_file(folder / "in.rawlog", fs::file_size(folder / "in.rawlog") - 1000);
   writeText(folder / "poles.rawlog", "old");
   expectFailure(run(), {"in.rawlog"});
@@ -271,15 +252,13 @@ TEST_F(ExtractApp, RefusesATruncatedRawlogUnlessAllowed) {
   EXPECT_EQ(names(folder.path()),
             std::vector<std::string>({"in", "in.rawlog", "in.tum", "poles.rawlog"}));
 
-  const auto outcome = run({"--allow-truncated"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--allow-truncated"}));
   EXPECT_NE(outcome.out.find("in 2 scans"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("ended too early"), std::string::npos) << outcome.out;
 }
 
 TEST_F(ExtractApp, RefusesUnknownClasses) {
-  writeStreet(folder / "in", 2);
-  import("in");
+  importStreet("in", 2);
   replace("in.rawlog", "CObservationPointCloud", "CObservationPointClown");
   expectFailure(run(), {"in.rawlog", "CObservationPointClown"});
   EXPECT_EQ(names(folder.path()), std::vector<std::string>({"in", "in.rawlog", "in.tum"}));
@@ -295,8 +274,7 @@ TEST_F(ExtractApp, RefusesATruncatedExternalCloud) {
 }
 
 TEST_F(ExtractApp, RefusesToReplaceItsInput) {
-  writeStreet(folder / "in", 1);
-  import("in");
+  importStreet("in", 1);
   const auto bytes = readText(folder / "in.rawlog");
   expectFailure(runProgram(extractMain, {"--config", config(), "--input", at("in.rawlog"),
                                          "--output", at("in.rawlog")}),
@@ -305,8 +283,7 @@ TEST_F(ExtractApp, RefusesToReplaceItsInput) {
 }
 
 TEST_F(ExtractApp, NamesWhatAFileInTheWrongPlaceIs) {
-  writeStreet(folder / "in", 1);
-  import("in");
+  importStreet("in", 1);
   expectFailure(runProgram(extractMain, {"--config", at("in.rawlog"), "--input", at("in.rawlog"),
                                          "--output", at("poles.rawlog")}),
                 {"in.rawlog: it is a rawlog, not an INI file"});
@@ -317,8 +294,7 @@ TEST_F(ExtractApp, NamesWhatAFileInTheWrongPlaceIs) {
 
 // Whatever the way of writing the name, and for all outputs of all programs.
 TEST_F(ExtractApp, SideOutputsReplaceNoInput) {
-  writeStreet(folder / "in", 1);
-  import("in");
+  importStreet("in", 1);
   const auto settings = readText(config());
   const fs::path path = config();
   const std::string same = (path.parent_path() / "." / path.filename()).string();
@@ -343,4 +319,5 @@ TEST_F(ExtractApp, WrongUsage) {
   expectUsageError(run({"--cvs", "x"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_extract_app

@@ -15,12 +15,10 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_inspect_app {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// A few scans of a simulated street as `folder/in`; `flipped`: in axes turned by 180° about x.
 void writeSimulated(const fs::path& folder, const std::string& lidar, double height,
@@ -92,13 +90,12 @@ class InspectApp : public StreetTest {
   /// Raw scans of a street of this length, m, as cutAnew() makes them, without odometry:
   /// `in.rawlog`, with their motion in `sim.tum`.
   void importCutAnew(const std::string& length) {
-    const auto simulated = runProgram(
+    const Outcome simulated = succeeded(runProgram(
         simulateMain,
         {"--quiet", "--config", "vlp16.ini", "--length", length, "--output", at("sim"), "--set",
          "simulation.motion_distortion=true", "--set", "simulation.spacing_m=0.8", "--set",
          "simulation.speed_m_s=8", "--set", "sensor.turn=clockwise", "--set",
-         "sensor.range_offset_m=0.1", "--set", "sensor.range_scale=0.995"});
-    ASSERT_EQ(simulated.code, 0) << simulated.err;
+         "sensor.range_offset_m=0.1", "--set", "sensor.range_scale=0.995"}));
     import("sim", false);  // for its true poses
     cutAnew(folder.path(), io::readTum(folder / "sim.tum").size());
     import("in", false);
@@ -115,38 +112,33 @@ std::string printed(const Inspection& inspection) {
   return text.str();
 }
 
-}  // namespace
-
 TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
   writeSimulated(folder / "in", "hdl32e", 1.0);
   import("in");
-  const auto outcome = inspectInput({"--write-config", at("found.ini")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(has(outcome.out, "beams             32")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "fits              model = hdl32e")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "tilt")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "config/hdl32e.ini has settings chosen")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "no odometry between all scans; --truth S.tum")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "`pole-map build --trajectory`, which cannot show")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "set turn = clockwise, cut_deg = -180")) << outcome.out;
+  const Outcome outcome = succeeded(inspectInput({"--write-config", at("found.ini")}));
+  EXPECT_HAS(outcome.out, "beams             32");
+  EXPECT_HAS(outcome.out, "fits              model = hdl32e");
+  EXPECT_HAS(outcome.out, "tilt");
+  EXPECT_HAS(outcome.out, "config/hdl32e.ini has settings chosen");
+  EXPECT_HAS(outcome.out, "no odometry between all scans; --truth S.tum");
+  EXPECT_HAS(outcome.out, "`pole-map build --trajectory`, which cannot show");
+  EXPECT_HAS(outcome.out, "set turn = clockwise, cut_deg = -180");
   const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.model, "hdl32e");
   EXPECT_NEAR(settings.sensor.height, 1.0, 0.1);
   const std::string text = readText(folder / "found.ini");
   EXPECT_TRUE(has(text, "[sensor]") && has(text, "clock_offset_s")) << text;
   EXPECT_FALSE(has(text, "[scan_line]")) << "only what was looked for";
-  const auto extracted = run(
-      {"--config", at("found.ini"), "--input", at("in.rawlog"), "--output", at("poles.rawlog")});
-  EXPECT_EQ(extracted.code, 0) << extracted.err;
+  const Outcome extracted = succeeded(run(
+      {"--config", at("found.ini"), "--input", at("in.rawlog"), "--output", at("poles.rawlog")}));
 }
 
 TEST_F(InspectApp, WritesATableOfTwoBlocks) {
   writeSimulated(folder / "in", "hdl64e", 1.73);
   import("in");
-  const auto outcome = inspectInput({"--write-config", at("found.ini")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(has(outcome.out, "block of 32 starting")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "no preset")) << outcome.out;
+  const Outcome outcome = succeeded(inspectInput({"--write-config", at("found.ini")}));
+  EXPECT_HAS(outcome.out, "block of 32 starting");
+  EXPECT_HAS(outcome.out, "no preset");
   const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.elevations.size(), 32u);
   EXPECT_EQ(settings.sensor.lowerElevations.size(), 32u);
@@ -158,8 +150,7 @@ TEST_F(InspectApp, WritesATableOfTwoBlocks) {
 TEST_F(InspectApp, UnderstandsASensorPoseThatTurnsCloudsOver) {
   writeSimulated(folder / "in", "hdl32e", 1.0, true);
   import("in", true, "0 0 0 0 0 180");
-  const auto outcome = inspectInput({"--write-config", at("found.ini")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(inspectInput({"--write-config", at("found.ini")}));
   EXPECT_FALSE(has(outcome.out, "upside down       ")) << outcome.out;
   const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.model, "hdl32e");
@@ -169,28 +160,26 @@ TEST_F(InspectApp, UnderstandsASensorPoseThatTurnsCloudsOver) {
 TEST_F(InspectApp, SaysWhenCloudsStandOnTheirHead) {
   writeSimulated(folder / "in", "hdl32e", 1.0, true);
   import("in");
-  const auto outcome = inspectInput();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(has(outcome.out, "--sensor-pose whose roll is 180 deg")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "not looked for in clouds that are upside down")) << outcome.out;
+  const Outcome outcome = succeeded(inspectInput());
+  EXPECT_HAS(outcome.out, "--sensor-pose whose roll is 180 deg");
+  EXPECT_HAS(outcome.out, "not looked for in clouds that are upside down");
 }
 
 TEST_F(InspectApp, RefusesPolesAndEmptyRawlogs) {
-  writeStreet(folder / "in", 2);
-  import("in");
+  importStreet("in", 2);
   ASSERT_EQ(
       run({"--config", config(), "--input", at("in.rawlog"), "--output", at("poles.rawlog")}).code,
       0);
   const auto poles = run({"--inspect", at("poles.rawlog"), "--write-config", at("none.ini")});
   EXPECT_EQ(poles.code, 1);
-  EXPECT_TRUE(has(poles.err, "holds poles")) << poles.err;
+  EXPECT_HAS(poles.err, "holds poles");
   EXPECT_FALSE(fs::exists(folder / "none.ini"));
   EXPECT_EQ(run({"--inspect", at("missing.rawlog")}).code, 1);
 }
 
 TEST_F(InspectApp, UsageNamesWhatIsMissing) {
   EXPECT_EQ(run({}).code, 2);
-  EXPECT_TRUE(has(run({"--config", "a", "--input", "b"}).err, "--output"));
+  EXPECT_HAS(run({"--config", "a", "--input", "b"}).err, "--output");
   EXPECT_EQ(run({"--write-config", "a.ini"}).code, 2);
   EXPECT_EQ(run({"--inspect", "a", "--input", "b"}).code, 2);
 }
@@ -202,9 +191,8 @@ TEST_F(InspectApp, AWrongModelIsRefused) {
   const auto outcome =
       run({"--config", config(), "--input", at("in.rawlog"), "--output", at("poles.rawlog")});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_TRUE(has(outcome.err, "scan 0: the cloud contradicts [sensor] model = hdl32e"))
-      << outcome.err;
-  EXPECT_TRUE(has(outcome.err, "as model = vlp16 has")) << outcome.err;
+  EXPECT_HAS(outcome.err, "scan 0: the cloud contradicts [sensor] model = hdl32e");
+  EXPECT_HAS(outcome.err, "as model = vlp16 has");
   EXPECT_FALSE(fs::exists(folder / "poles.rawlog"));
   writeText(folder / "forced.ini", "[sensor]\nmodel = hdl32e\ncheck_beams = false\n");
   EXPECT_EQ(run({"--config", at("forced.ini"), "--input", at("in.rawlog"), "--output",
@@ -214,10 +202,9 @@ TEST_F(InspectApp, AWrongModelIsRefused) {
 }
 
 TEST_F(InspectApp, KnowsTheLidarOfKitti) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  POLEMCL_NEEDS_DATA();
   ImportOptions options;
-  options.input = fs::path(data) / "kitti_raw_0005";
+  options.input = dataFolder() / "kitti_raw_0005";
   options.output = folder / "in.rawlog";
   options.every = 20;
   importDataset(options);
@@ -242,15 +229,13 @@ TEST_F(InspectApp, FindsACutThatMovesAndRangesThatAreOff) {
   EXPECT_EQ(found.timing->timing.turn, Turn::clockwise);
   EXPECT_TRUE(found.timing->timing.movingCut);
   EXPECT_LT(found.timing->after, 0.5 * found.timing->before);
-  EXPECT_TRUE(has(readText(folder / "found.ini"), "moving_cut = true"));
-  std::ostringstream text;
-  printInspection(text, found);
-  EXPECT_TRUE(has(text.str(), "each scan cut at its first point (these lie ")) << text.str();
+  EXPECT_HAS(readText(folder / "found.ini"), "moving_cut = true");
+  EXPECT_HAS(printed(found), "each scan cut at its first point (these lie ");
   ASSERT_TRUE(found.ranges);
   EXPECT_NEAR(found.ranges->offset, 0.1, 0.02);
   EXPECT_NEAR(found.ranges->scale, 0.995, 0.0015);
   EXPECT_GT(found.ranges->significance, 4);
-  EXPECT_TRUE(has(text.str(), "\nranges of poles   range_offset_m = 0.")) << text.str();
+  EXPECT_HAS(printed(found), "\nranges of poles   range_offset_m = 0.");
   const SensorOptions written = loadSettings((folder / "found.ini").string()).sensor;
   EXPECT_NEAR(written.rangeOffset, found.ranges->offset, 0.0005);
   EXPECT_NEAR(written.rangeScale, found.ranges->scale, 0.00005);
@@ -270,14 +255,14 @@ TEST_F(InspectApp, TheOrderOfThePointsTellsRawScans) {
   EXPECT_FALSE(loadSettings(at("found.ini")).sensor.timing.known());
   files.writeConfig.reset();
   EXPECT_FALSE(found.timing);
-  EXPECT_TRUE(has(printed(found), "in the order of measuring, clockwise")) << printed(found);
-  EXPECT_TRUE(has(printed(found), advice)) << printed(found);
+  EXPECT_HAS(printed(found), "in the order of measuring, clockwise");
+  EXPECT_HAS(printed(found), advice);
   found.timing.emplace();
   EXPECT_TRUE(has(printed(found), advice)) << "no pole was seen twice";
   found.timing->timing.turn = Turn::compensated;
   found.timing->pairs = 100;
-  EXPECT_TRUE(has(printed(found), "poses found from raw scans hide it")) << printed(found);
-  EXPECT_TRUE(has(printed(found), advice)) << printed(found);
+  EXPECT_HAS(printed(found), "poses found from raw scans hide it");
+  EXPECT_HAS(printed(found), advice);
   Inspection slid = found;
   slid.sensor.sensor.beams.origin.slide = 1;
   EXPECT_FALSE(has(printed(slid), advice)) << "corrected for motion";
@@ -320,13 +305,12 @@ TEST_F(InspectApp, PrintsATurnThatIsNotSure) {
   found.timing->candidate = {Turn::clockwise, 0.1, M_PI};
   found.timing->withCandidate = 0.0533;
   const std::string advice = "set turn = clockwise, cut_deg = 180\n";
-  EXPECT_TRUE(has(printed(found),
-                  "with turn = clockwise, cut_deg = 180, a pole moves by 0.0533 m,\n"
-                  "                  2.4 standard errors better"))
-      << printed(found);
-  EXPECT_TRUE(has(printed(found), advice)) << printed(found);
+  EXPECT_HAS(printed(found),
+             "with turn = clockwise, cut_deg = 180, a pole moves by 0.0533 m,\n"
+             "                  2.4 standard errors better");
+  EXPECT_HAS(printed(found), advice);
   found.timing->turnSignificance = 1.9;
-  EXPECT_TRUE(has(printed(found), "1.9 standard errors better (")) << printed(found);
+  EXPECT_HAS(printed(found), "1.9 standard errors better (");
   EXPECT_FALSE(has(printed(found), advice)) << printed(found);
   found.timing->turnSignificance = 3.9;
   found.timing->withCandidate = 0.12;  // poses or clock are off
@@ -357,10 +341,9 @@ TEST(RawlogInspection, PacketsStateTheirTiming) {
 }
 
 TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  POLEMCL_NEEDS_DATA();
   ImportOptions options;
-  options.input = fs::path(data) / "kitti_raw_0005";
+  options.input = dataFolder() / "kitti_raw_0005";
   options.output = folder / "in.rawlog";
   importDataset(options);
   InspectOptions files;
@@ -375,19 +358,18 @@ TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
   ASSERT_TRUE(found.ranges);
   EXPECT_NEAR(found.ranges->offset, 0.055, 0.025);  // as in config/kitti.ini
   EXPECT_EQ(timing->timing.clock, 0);
-  EXPECT_NE(readText(folder / "found.ini").find("turn = clockwise"), std::string::npos);
+  EXPECT_HAS(readText(folder / "found.ini"), "turn = clockwise");
 
   options.timing = {Turn::clockwise, 0.1, M_PI, 0.5};  // now the rawlog states it
   importDataset(options);
   const Inspection stated = inspect(files);
   ASSERT_TRUE(stated.timing);
   EXPECT_TRUE(stated.timing->isStated);
-  std::ostringstream text;
-  printInspection(text, stated);
-  EXPECT_TRUE(has(text.str(), "as the rawlog states it: clockwise, cut at 180 deg")) << text.str();
+  EXPECT_HAS(printed(stated), "as the rawlog states it: clockwise, cut at 180 deg");
   const SensorOptions written = loadSettings((folder / "found.ini").string()).sensor;
   EXPECT_EQ(written.timing.turn, Turn::automatic);
   EXPECT_EQ(written.timing.clock, 0);
 }
 
+}  // namespace
 }  // namespace polemcl::test_inspect_app

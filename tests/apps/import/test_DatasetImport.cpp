@@ -10,17 +10,14 @@
 #include "io/data/Trajectory.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/DiskCalls.h"
-#include "support/ExpectHas.h"
 #include "support/Refusal.h"
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_dataset_import {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 struct Pair {
   mrpt::obs::CActionRobotMovement2D::Ptr movement;  ///< null: none in the action
@@ -62,8 +59,6 @@ class DatasetImport : public testing::Test {
   TempFolder folder;
   ImportOptions options;
 };
-
-}  // namespace
 
 TEST_F(DatasetImport, KeepsTimesPathsAndTruth) {
   writeLine(options.input, 3);
@@ -393,4 +388,5 @@ TEST_F(DatasetImport, OldOutputsStayUntilTheNewOnesAreComplete) {
   EXPECT_EQ(readPairs(options.output).size(), 3u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_dataset_import

@@ -3,19 +3,16 @@
 #include <sys/resource.h>
 
 #include <csignal>
-#include <cstdlib>
 
 #include "import/ImportApp.h"
 #include "mrpt/rawlog/RawlogReader.h"
-#include "support/ExpectHas.h"
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_import_app {
+namespace {
 
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// While it lives, files can grow to one megabyte, and no further: as on a full disk.
 class SmallDisk {
@@ -51,8 +48,6 @@ std::string commentOf(const fs::path& rawlog) {
   reader.next(entry);
   return reader.comment();
 }
-
-}  // namespace
 
 TEST_F(ImportApp, KeepsTheMeasuringTimesInTheRawlog) {
   writeLine(folder / "in", 2);
@@ -95,8 +90,7 @@ TEST_F(ImportApp, ImportsPcdFilesIntoTheRawlog) {
   for (const char* name : {"1.pcd", "2.pcd"})
     writeText(folder / "in" / name,
               "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nDATA ascii\n1 2 3\nnan 0 0\n");
-  const auto outcome = run("pcd");
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("pcd"));
   for (const char* words : {"2 scans; 2 points, 2 invalid", "truth: none",
                             "to localize, give --odometry", "0.1 s apart"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
@@ -113,8 +107,8 @@ TEST_F(ImportApp, ImportsPcdFilesIntoTheRawlog) {
 
 TEST_F(ImportApp, ImportsAFolder) {
   writeLine(folder / "in", 3);
-  const auto outcome = run("folder", {"--every", "2", "--odometry-noise", "0.02", "--seed", "7"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome =
+      succeeded(run("folder", {"--every", "2", "--odometry-noise", "0.02", "--seed", "7"}));
   EXPECT_NE(outcome.out.find("2 scans, 1 left out"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("true motion with noise"), std::string::npos) << outcome.out;
   EXPECT_EQ(names(folder.path()), std::vector<std::string>({"in", "out.rawlog", "out.tum"}));
@@ -125,8 +119,7 @@ TEST_F(ImportApp, ImportsKittiOdometry) {
   // The camera looks along the LiDAR's x: camera x is -y, camera y is -z, camera z is x.
   writeText(folder / "in" / "calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
   writeText(folder / "in" / "poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 2.5\n");
-  const auto outcome = run("kitti-odometry", {"--quiet"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("kitti-odometry", {"--quiet"}));
   EXPECT_EQ(outcome.out, "");
   const auto truth = readText(folder / "out.tum");
   EXPECT_NE(truth.find(" 2.5"), std::string::npos) << truth;
@@ -163,16 +156,14 @@ TEST_F(ImportApp, ImportsKittiRawWithTheCalibrationOfItsDate) {
 
 TEST_F(ImportApp, TakesASensorPoseThatStartsWithAMinus) {
   writeLine(folder / "in", 2);
-  const auto outcome = run("folder", {"--sensor-pose", "-1.5 0 0 0 0 0"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("folder", {"--sensor-pose", "-1.5 0 0 0 0 0"}));
   EXPECT_NE(readText(folder / "out.tum").find(" 1.5"), std::string::npos);
 }
 
 TEST_F(ImportApp, ReportsWhatWasDropped) {
   writeLine(folder / "in", 3);
   writeBin(folder / "in" / "velodyne" / scanName(1), {{0, 0, 0, 0}});
-  const auto outcome = run("folder", {"--embed"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("folder", {"--embed"}));
   EXPECT_NE(outcome.out.find("1 empty ones dropped"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("1 invalid ones dropped"), std::string::npos) << outcome.out;
 }
@@ -224,12 +215,10 @@ TEST_F(ImportApp, WrongUsage) {
 }
 
 TEST_F(ImportApp, ImportsRealScans) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
-  const auto outcome =
-      runProgram(importMain, {"folder", "--input", (fs::path(data) / "kitti_raw_0005").string(),
-                              "--output", (folder / "out.rawlog").string(), "--every", "2"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  POLEMCL_NEEDS_DATA();
+  const Outcome outcome = succeeded(
+      runProgram(importMain, {"folder", "--input", (dataFolder() / "kitti_raw_0005").string(),
+                              "--output", (folder / "out.rawlog").string(), "--every", "2"}));
   EXPECT_NE(outcome.out.find(" 40 scans"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("odometry: from the dataset"), std::string::npos) << outcome.out;
 }
@@ -242,4 +231,5 @@ TEST_F(ImportApp, TheTruthReplacesNoInput) {
                 {"--output", "s.tum: is an input (--poses)"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_import_app

@@ -1,5 +1,4 @@
-/// \file test_ImportOwners.cpp
-/// \brief `pole-import nclt`, `mulran`, and `--poses`: from the owners' files to rawlog and truth.
+// `pole-import nclt`, `mulran`, and `--poses`: from the owners' files to rawlog and truth.
 
 #include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
@@ -7,7 +6,6 @@
 #include <mrpt/poses/CPosePDFGaussian.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "extract/ExtractApp.h"
 #include "import/DatasetImport.h"
@@ -18,13 +16,11 @@
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_import_owners {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 using namespace testing_nclt;
-
-namespace {
 
 class ImportOwners : public testing::Test {
  protected:
@@ -61,8 +57,6 @@ class ImportOwners : public testing::Test {
   std::vector<mrpt::obs::CActionRobotMovement2D::Ptr> motions;
 };
 
-}  // namespace
-
 TEST_F(ImportOwners, NcltTakesOneSessionOfSeveral) {
   writeNclt();
   for (const char* date : {"2012-01-15", "2012-01-22"}) {
@@ -79,8 +73,7 @@ TEST_F(ImportOwners, NcltTakesOneSessionOfSeveral) {
                                (folder / "out.rawlog").string()});
     return runProgram(importMain, more);
   };
-  const Outcome outcome = from({"--session", "2012-01-22"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(from({"--session", "2012-01-22"}));
   EXPECT_NE(outcome.out.find("3 scans"), std::string::npos) << outcome.out;
   EXPECT_TRUE(fs::exists(folder / "out.tum"));
   expectFailure(from({}), {"velodyne_data", "--session", "2012-01-15, 2012-01-22"});
@@ -90,8 +83,7 @@ TEST_F(ImportOwners, NcltTakesOneSessionOfSeveral) {
 
 TEST_F(ImportOwners, Nclt) {
   writeNclt();
-  const auto outcome = run("nclt");
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("nclt"));
   for (const char* words : {"3 scans; 3 points, 3 invalid", "truth: beside it", "from the dataset"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
   fs::remove_all(folder / "in");  // the points are inside
@@ -136,8 +128,7 @@ TEST_F(ImportOwners, Mulran) {
   writeText(folder / "in" / "global_pose.csv",
             "1561000444390857630,1,0,0,355000,0,1,0,4025000,0,0,1,19\n"
             "1561000444490857630,1,0,0,355001,0,1,0,4025000,0,0,1,19\n");
-  const auto outcome = run("mulran", {"--odometry-noise", "0"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("mulran", {"--odometry-noise", "0"}));
   const auto all = clouds();
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0]->getExternalStorageFile(),
@@ -176,24 +167,21 @@ TEST_F(ImportOwners, PosesForPcdFiles) {
     writeText(folder / "in" / name,
               "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nDATA ascii\n1 2 3\n");
   writeText(folder / "p.tum", "1e9 7 0 0 0 0 0 1\n1000000000.1 9 0 0 0 0 0 1\n");
-  const auto outcome = run("pcd", {"--poses", (folder / "p.tum").string()});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run("pcd", {"--poses", (folder / "p.tum").string()}));
   EXPECT_NEAR(io::readTum(folder / "out.tum")[1].time, 1000000000.1, 1e-6);
 }
 
 TEST_F(ImportOwners, TheRealNcltScanGivesPolesWithItsConfiguration) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  POLEMCL_NEEDS_DATA();
   const auto rawlog = (folder / "out.rawlog").string(), csv = (folder / "poles.csv").string();
-  const auto outcome = runProgram(
-      importMain, {"nclt", "--input", (fs::path(data) / "nclt_scan").string(), "--output", rawlog});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  const auto extracted =
+  const Outcome outcome = succeeded(runProgram(
+      importMain, {"nclt", "--input", (dataFolder() / "nclt_scan").string(), "--output", rawlog}));
+  const Outcome extracted = succeeded(
       runProgram(extractMain, {"--config", POLEMCL_SOURCE_DIR "/config/nclt.ini", "--input", rawlog,
-                               "--output", (folder / "poles.rawlog").string(), "--csv", csv});
-  EXPECT_EQ(extracted.code, 0) << extracted.err;
+                               "--output", (folder / "poles.rawlog").string(), "--csv", csv}));
   const std::string rows = readText(csv);
   EXPECT_GE(std::count(rows.begin(), rows.end(), '\n'), 1 + 5) << rows;  // a header, poles
 }
 
+}  // namespace
 }  // namespace polemcl::test_import_owners

@@ -3,24 +3,20 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
-#include <optional>
-
 #include "config/TimingComment.h"
 #include "import/ImportApp.h"
 #include "io/data/Trajectory.h"
 #include "mrpt/rawlog/GnssFixes.h"
 #include "mrpt/rawlog/RawlogReader.h"
-#include "support/ExpectHas.h"
 #include "support/RosBags.h"
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_rosbag_import {
+namespace {
 
 using namespace polemcl::apps;
 using namespace polemcl::tests;
 using namespace testing_apps;
-
-namespace {
 
 constexpr double start = 1700000000;
 
@@ -63,12 +59,9 @@ Rawlog readRawlog(const fs::path& file) {
   return result;
 }
 
-}  // namespace
-
 TEST_F(RosbagImport, MakesARawlogOfABag) {
   writeBag();
-  const auto outcome = run();
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run());
   for (const char* words : {"4 scans; 7200 points, 0 invalid", "truth: none",
                             "odometry: from the dataset", "counterclockwise, cut at"})
     EXPECT_HAS(outcome.out, words);
@@ -104,9 +97,8 @@ TEST_F(RosbagImport, StatedPosesAndTimingsComeFirst) {
   for (int i = 0; i < 4; ++i)
     poses += std::to_string(start + 0.1 * i) + " " + std::to_string(i) + " 5 0 0 0 0 1\n";
   writeText(folder / "truth.tum", poses);
-  const auto outcome = run({"--sensor-pose", "1 2 3 0 0 0", "--turn", "clockwise", "--poses",
-                            (folder / "truth.tum").string()});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--sensor-pose", "1 2 3 0 0 0", "--turn", "clockwise",
+                                         "--poses", (folder / "truth.tum").string()}));
   EXPECT_EQ(outcome.out.find("counterclockwise"), std::string::npos) << outcome.out;
   const Rawlog rawlog = readRawlog(folder / "out.rawlog");
   EXPECT_EQ(rawlog.timing.turn, Turn::clockwise);
@@ -128,8 +120,7 @@ TEST_F(RosbagImport, ChoosesTopics) {
   fs::remove(folder / "in" / "metadata.yaml");
   expectFailure(run(), {"/points (4 messages), /rear (1 messages)", "--cloud-topic"});
   EXPECT_EQ(names(folder.path()), std::vector<std::string>({"in"}));
-  const auto outcome = run({"--cloud-topic", "/rear", "--odometry-topic", "/odom"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--cloud-topic", "/rear", "--odometry-topic", "/odom"}));
   EXPECT_HAS(outcome.out, "1 scans; 1 points");
 }
 
@@ -146,8 +137,7 @@ TEST_F(RosbagImport, PositionsFromSatellitesComeBeforeTheNextScan) {
   fs::remove(folder / "in" / "metadata.yaml");
   EXPECT_HAS(run().out, "/fix (4 messages), /rtk (4 messages); none is used");
   EXPECT_TRUE(readGnssFixes((folder / "out.rawlog").string(), false).empty());
-  const auto outcome = run({"--gnss-topic", "/fix"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--gnss-topic", "/fix"}));
   EXPECT_HAS(outcome.out, "/fix: 4 positions from satellites");
 
   RawlogReader reader((folder / "out.rawlog").string());
@@ -171,4 +161,5 @@ TEST_F(RosbagImport, BadInputAndWrongUsage) {
   expectUsageError(runProgram(importMain, importArguments(folder, "pcd", {"--cloud-topic", "/p"})));
 }
 
+}  // namespace
 }  // namespace polemcl::test_rosbag_import

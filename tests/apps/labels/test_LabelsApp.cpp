@@ -12,12 +12,10 @@
 #include "support/StreetDatasets.h"
 
 namespace polemcl::test_labels_app {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 constexpr std::uint32_t trunk = 71, pole = 80, building = 50;
 
@@ -30,9 +28,7 @@ class LabelsApp : public testing::Test {
   std::string at(const std::string& name) const { return (folder / name).string(); }
   Outcome run(const std::string& output = "truth.polemap",
               const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"--input", at("00"), "--output", at(output)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(labelsMain, arguments);
+    return runProgram(labelsMain, {"--input", at("00"), "--output", at(output)}, more);
   }
   /// Scans a metre apart along x, at y = 0; KITTI's camera looks along x and has z ahead.
   void writeSequence(std::size_t scans) {
@@ -64,14 +60,10 @@ class LabelsApp : public testing::Test {
   TempFolder folder;
 };
 
-}  // namespace
-
 TEST_F(LabelsApp, MapsTheLabelsOfASequence) {
   writeSequence(5);
-  const auto outcome = run();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("2 poles from 350 points in 5 scans"), std::string::npos)
-      << outcome.out;
+  const Outcome outcome = succeeded(run());
+  EXPECT_HAS(outcome.out, "2 poles from 350 points in 5 scans");
   const auto map = io::readPoleMap(folder / "truth.polemap");
   ASSERT_EQ(map.poles.size(), 2u);
   EXPECT_NEAR(map.poles[0].x, 6, 1e-3);  // the LiDAR's frame of scan 0
@@ -154,4 +146,5 @@ TEST_F(LabelsApp, WrongUsage) {
   expectUsageError(runProgram(labelsMain, {"--input", "a", "--output", "b", "--stems", "x"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_labels_app

@@ -6,11 +6,9 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_filter_runs {
-
-using namespace polemcl;
-using namespace polemcl::apps;
-
 namespace {
+
+using namespace polemcl::apps;
 
 using Updates = std::vector<LocalizationUpdate>;
 
@@ -60,8 +58,6 @@ void expectEqual(const Updates& a, const Updates& b) {
     EXPECT_EQ(a[i].health.innovation, b[i].health.innovation);
   }
 }
-
-}  // namespace
 
 TEST_F(FilterRunsTest, OneUpdatePerScanAtItsTime) {
   const auto results = run(runs);
@@ -134,4 +130,5 @@ TEST_F(FilterRunsTest, RefusesMoreParticlesThanFitSideBySide) {
   EXPECT_REFUSED(FilterRuns({street.map}, settings(runs)), "51 runs of 1000000 particles");
 }
 
+}  // namespace
 }  // namespace polemcl::test_filter_runs

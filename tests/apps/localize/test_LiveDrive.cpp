@@ -1,6 +1,5 @@
-/// \file test_LiveDrive.cpp
-/// \brief `pole-localize --sensors`: packets of a VLP-16 over the network or from a PCAP file, with
-/// the shipped example of an INI file.
+// `pole-localize --sensors`: packets of a VLP-16 over the network or from a PCAP file, with
+// the shipped example of an INI file.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -17,16 +16,14 @@
 #include "io/data/Trajectory.h"
 #include "localize/EndSignals.h"
 #include "localize/LocalizeApp.h"
-#include "support/ExpectHas.h"
 #include "support/UdpSender.h"
 #include "support/VelodynePackets.h"
 
 namespace polemcl::test_live_drive {
+namespace {
 
 using namespace testing_apps;
 using namespace polemcl::apps;
-
-namespace {
 
 constexpr double step = 0.5;  // m from turn to turn
 
@@ -115,6 +112,23 @@ class LiveDriveTest : public testing::Test {
     }
   }
 
+  /// Each turn waits for the pose of the one before the last, so none is dropped on a slow machine;
+  /// Ctrl-C after the last pose.
+  void driveAndInterrupt(int turns, bool clock = false) {
+    drive(
+        turns, [this](std::size_t complete) { waitForLines(complete); }, clock);
+    waitForLines(static_cast<std::size_t>(turns - 2));
+    interrupt();
+  }
+  /// The program, while another thread sends.
+  Outcome runDuring(const std::function<void()>& sending,
+                    const std::vector<std::string>& more = {}) {
+    std::thread sender(sending);
+    const Outcome outcome = run(more);
+    sender.join();
+    return outcome;
+  }
+
   static std::size_t countOf(const std::string& words, const std::string& text) {
     std::size_t count = 0;
     for (auto at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
@@ -131,18 +145,8 @@ class LiveDriveTest : public testing::Test {
   std::atomic<bool> ended{false};
 };
 
-}  // namespace
-
-/// Each turn waits for the pose of the one before the last, so none is dropped on a slow machine.
 TEST_F(LiveDriveTest, PacketsBecomePosesUntilCtrlC) {
-  std::thread sender([this] {
-    drive(22, [this](std::size_t complete) { waitForLines(complete); });
-    waitForLines(20);
-    interrupt();
-  });
-  const Outcome outcome = run();
-  sender.join();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runDuring([this] { driveAndInterrupt(22); }));
   const auto all = lines();
   ASSERT_EQ(all.size(), 20u);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -173,21 +177,13 @@ TEST_F(LiveDriveTest, PacketsBecomePosesUntilCtrlC) {
 }
 
 TEST_F(LiveDriveTest, TheRecordGivesTheSamePoses) {
-  std::thread sender([this] {
-    drive(12, [this](std::size_t complete) { waitForLines(complete); });
-    waitForLines(10);
-    interrupt();
-  });
   const std::string record = (folder / "record.rawlog").string();
-  const Outcome live = run({"--record", record});
-  sender.join();
-  ASSERT_EQ(live.code, 0) << live.err;
-  const Outcome played =
-      runProgram(localizeMain, {"--config", std::string(POLEMCL_SOURCE_DIR) + "/config/vlp16.ini",
-                                "--input", record, "--map", (folder / "map.polemap").string(),
-                                "--output", (folder / "again").string(), "--start", "0,0,0,0.3,3",
-                                "--set", "health.max_gap_s=60"});
-  ASSERT_EQ(played.code, 0) << played.err;
+  succeeded(runDuring([this] { driveAndInterrupt(12); }, {"--record", record}));
+  const Outcome played = succeeded(runProgram(
+      localizeMain,
+      {"--config", std::string(POLEMCL_SOURCE_DIR) + "/config/vlp16.ini", "--input", record,
+       "--map", (folder / "map.polemap").string(), "--output", (folder / "again").string(),
+       "--start", "0,0,0,0.3,3", "--set", "health.max_gap_s=60"}));
   EXPECT_EQ(io::readPlanarTum(folder / "out/run_00.tum").size(), 10u);
   for (const char* name : {"run_00.tum", "run_00_cov.csv", "run_00_health.csv"})
     EXPECT_EQ(readText(folder / "again" / name), readText(folder / "out" / name)) << name;
@@ -207,13 +203,10 @@ TEST_F(LiveDriveTest, APcapFilePlaysAsIfLiveAndEnds) {
   writeText(folder / "drive.pcap", pcapFile(packets, lidarPort));
   writeSensors("process_rate = 754\npcap_read_fast = true\npcap_input = " +
                (folder / "drive.pcap").string());
-  std::thread sender([this] {
+  const Outcome outcome = succeeded(runDuring([this] {
     const UdpSender odometry(odometryPort);
     while (!ended) odometry.send("0 0 0");
-  });
-  const Outcome outcome = run();
-  sender.join();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }));
   EXPECT_EQ(outcome.err, "");
   const auto summary = result("summary.json");
   const auto all = lines();
@@ -237,9 +230,8 @@ TEST_F(LiveDriveTest, ASensorThatFailsEndsTheDriveWithItsResults) {
                "process_rate = 50\npcap_read_fast = true\ndata_port = " +
                    std::to_string(lidarPort) +
                    "\npcap_input = " + (folder / "drive.pcap").string() + "\n");
-  std::thread sender([&] { drive(6, [this](std::size_t complete) { waitForLines(complete); }); });
-  const Outcome outcome = run();
-  sender.join();
+  const Outcome outcome =
+      runDuring([this] { drive(6, [this](std::size_t complete) { waitForLines(complete); }); });
   expectFailure(outcome, {"scans of two sensors", "the results up to then are in", "out"});
   EXPECT_GE(io::readPlanarTum(folder / "out/run_00.tum").size(), 4u);
 }
@@ -325,17 +317,9 @@ TEST_F(LiveDriveTest, DoesNotWarnOfTurnsThatFit) {
         Case{true, {"sensor.turn=clockwise", "sensor.cut_deg=0", "sensor.stamp_turn=0"}}}) {
     ended = false;
     fs::remove(folder / "poses.jsonl");
-    std::thread sender([&] {
-      drive(
-          5, [this](std::size_t complete) { waitForLines(complete); }, one.clock);
-      waitForLines(3);
-      interrupt();
-    });
     std::vector<std::string> more{"--quiet"};
     for (const auto& set : one.set) more.insert(more.end(), {"--set", set});
-    const Outcome outcome = run(more);
-    sender.join();
-    EXPECT_EQ(outcome.code, 0);
+    const Outcome outcome = succeeded(runDuring([&] { driveAndInterrupt(5, one.clock); }, more));
     EXPECT_EQ(outcome.err, "");
   }
 }
@@ -387,22 +371,15 @@ TEST_F(LiveDriveTest, AStreamThatNobodyReadsDoesNotHoldTheProgram) {
 }
 
 TEST_F(LiveDriveTest, ADriveWithoutPolesKeepsItsResults) {
-  std::thread sender([this] {
-    drive(6, [this](std::size_t complete) { waitForLines(complete); });
-    waitForLines(4);
-    interrupt();
-  });
-  const Outcome outcome = run({"--set", "scan_line.min_confidence=1"});
-  sender.join();
+  const Outcome outcome =
+      runDuring([this] { driveAndInterrupt(6); }, {"--set", "scan_line.min_confidence=1"});
   expectFailure(outcome, {"no pole in any of", "the results up to then are in"});
   EXPECT_TRUE(fs::exists(folder / "out/summary.json"));
 }
 
 TEST_F(LiveDriveTest, AFirstScanThatCannotBeUsedIsSaid) {
-  std::thread sender([this] { drive(6, [](std::size_t) {}); });
   start = "100000,0,0,2,5";
-  const Outcome outcome = run();
-  sender.join();
+  const Outcome outcome = runDuring([this] { drive(6, [](std::size_t) {}); });
   expectFailure(outcome, {"the start at 100000 0 m lies"});
   EXPECT_FALSE(fs::exists(folder / "out/summary.json"));
 }
@@ -440,4 +417,5 @@ TEST_F(LiveDriveTest, NamesAWrongFileOfSensors) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
+}  // namespace
 }  // namespace polemcl::test_live_drive

@@ -16,7 +16,6 @@
 
 namespace polemcl::test_live_player {
 namespace {
-
 using apps::LivePlayer;
 using report::KeyPress;
 using Source = report::Playback::Source;
@@ -111,8 +110,6 @@ class LivePlayerTest : public testing::Test {
   std::optional<LivePlayer> player;
 };
 
-}  // namespace
-
 TEST_F(LivePlayerTest, WithoutKeysTheRunGoesThrough) {
   open();
   EXPECT_TRUE(player->isOpen());
@@ -193,4 +190,5 @@ TEST_F(LivePlayerTest, WhatCannotBeDrawnEndsTheRun) {
   EXPECT_THROW(give(1), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_live_player

@@ -1,14 +1,12 @@
-/// \file test_LocalizeMemory.cpp
-/// \brief pole-localize takes the same memory for a drive of any length.
+// pole-localize takes the same memory for a drive of any length.
 
 #include "support/LocalizeTest.h"
 #include "support/MemoryTaken.h"
 
 namespace polemcl::test_localize_memory {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 constexpr std::size_t directions = 1440;  // of the visibility range: 5.8 kB a scan
 
@@ -41,15 +39,12 @@ class LocalizeMemory : public LocalizeTest {
   std::int64_t peakOf(std::size_t count) {
     writeDrive(count);
     const std::size_t peak = tests::memoryTakenBy([&] {
-      const auto outcome = runWithTruth({"--runs", "2", "--particles", "50"});
-      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      const Outcome outcome = succeeded(runWithTruth({"--runs", "2", "--particles", "50"}));
     });
     EXPECT_EQ(summary()["poses"], count);
     return static_cast<std::int64_t>(peak);
   }
 };
-
-}  // namespace
 
 // What grows is the truth: 32 bytes a pose, and up to twice that again while its vector grows.
 TEST_F(LocalizeMemory, DoesNotGrowWithTheDrive) {
@@ -59,4 +54,5 @@ TEST_F(LocalizeMemory, DoesNotGrowWithTheDrive) {
   EXPECT_GT(few, 100000);  // something was counted
 }
 
+}  // namespace
 }  // namespace polemcl::test_localize_memory

@@ -4,17 +4,14 @@
 #include "support/LocalizeTest.h"
 
 namespace polemcl::test_localize_player {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 class LocalizePlayer : public LocalizeTest {
  protected:
   nlohmann::json timings() const { return nlohmann::json::parse(readText(out("timings.json"))); }
 };
-
-}  // namespace
 
 TEST_F(LocalizePlayer, TellsWhereTheStartCameFrom) {
   ASSERT_EQ(runWithTruth().code, 0);
@@ -48,8 +45,7 @@ TEST_F(LocalizePlayer, RunsSideBySideHaveTheBytesOfRunsOneByOne) {
 }
 
 TEST_F(LocalizePlayer, TellsTheLatencyOfEachStage) {
-  const auto outcome = runWithTruth({"--runs", "2"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runWithTruth({"--runs", "2"}));
   const auto json = timings();
   EXPECT_EQ(json["rate"], "max");
   EXPECT_EQ(json["filter_s"].size(), 2u);
@@ -122,4 +118,5 @@ TEST_F(LocalizePlayer, WhatIsKnownAtTheEndOnlyChangesNothingEither) {
   EXPECT_EQ(bytes(), before);
 }
 
+}  // namespace
 }  // namespace polemcl::test_localize_player

@@ -8,17 +8,15 @@
 #include <polemcl/localizer/MapBuilder.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "localizer/ScanOdometry.h"
-#include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
 #include "support/Refusal.h"
 #include "support/Samples.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_localizer {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 /// The street with odometry as poses, beside the scans of poles.
 class LocalizerTest : public LocalizeTest {
@@ -49,14 +47,11 @@ class LocalizerTest : public LocalizeTest {
   std::vector<CObservationPoles> scans_poles;
 };
 
-}  // namespace
-
 TEST_F(LocalizerTest, GivesThePosesOfPoleLocalize) {
   const Pose2D& start = street.truth.front();
   const std::string text = std::to_string(start.x) + "," + std::to_string(start.y) + "," +
                            std::to_string(start.yaw * 180 / M_PI) + ",0.5,3";
-  const Outcome outcome = run({"--start", text});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--start", text}));
   const auto expected = io::planar(io::readTum(out("run_00.tum")));
   ASSERT_EQ(expected.size(), scans);
   Localizer own(Settings(out("config.ini").string()), folder / "map.polemap");
@@ -164,8 +159,7 @@ TEST(SettingsTest, AreReadReplacedAndWritten) {
 
 TEST_F(StreetTest, PointsBecomePoses) {
   constexpr std::size_t number = 25;
-  writeStreet(folder / "in", number);
-  import("in");
+  importStreet("in", number);
   buildAtTruth();
   const auto truth = io::planar(io::readTum(folder / "in.tum"));
   Localizer localizer(Settings(config()), folder / "map.polemap");
@@ -181,15 +175,12 @@ TEST_F(StreetTest, PointsBecomePoses) {
   }
 }
 
-namespace {
-
 /// A drive along the street of writeStreet() with odometry that comes by itself.
 class OdometryTest : public StreetTest {
  protected:
   static constexpr std::size_t number = 12;
   OdometryTest() {
-    writeStreet(folder / "in", number);
-    import("in");
+    importStreet("in", number);
     buildAtTruth();
   }
   Localizer started() const {
@@ -224,8 +215,6 @@ class OdometryTest : public StreetTest {
   }
   static constexpr Pose2D pose_odometry_map{30, -20, 1};
 };
-
-}  // namespace
 
 TEST_F(OdometryTest, MayComeAtOtherTimesThanTheScans) {
   Localizer own = started(), known = started();
@@ -370,8 +359,6 @@ TEST_F(OdometryTest, AfterAClockThatBeginsAgainANewStartTakesItsTimes) {
   }
 }
 
-namespace {
-
 /// Readings at 50 Hz and 10 m/s.
 OdometryReading fastReading(int i, double late) {
   OdometryReading reading;
@@ -379,8 +366,6 @@ OdometryReading fastReading(int i, double late) {
   reading.pose.x = 0.2 * i;
   return reading;
 }
-
-}  // namespace
 
 TEST(ScanOdometry, AClockThatIsSetBackByHalfASecondIsNoJump) {
   ScanOdometry odometry{MotionOptions()};
@@ -444,8 +429,7 @@ TEST_F(OdometryTest, IsKeptForAMinute) {
 
 TEST_F(StreetTest, PointsBecomeTheMapOfPoleMapBuild) {
   constexpr std::size_t number = 12;
-  writeStreet(folder / "in", number);
-  import("in");
+  importStreet("in", number);
   buildAtTruth();
   const auto truth = io::planar(io::readTum(folder / "in.tum"));
   MapBuilder builder{Settings(config())};
@@ -471,4 +455,5 @@ TEST_F(StreetTest, PointsBecomeTheMapOfPoleMapBuild) {
   EXPECT_HAS(wrong(truth.back().time + 1, NAN), "the pose of scan 12 is not finite");
 }
 
+}  // namespace
 }  // namespace polemcl::test_localizer

@@ -5,17 +5,13 @@
 #include "localize/Pace.h"
 
 namespace polemcl::test_pace {
-
-using namespace polemcl;
-using polemcl::apps::Pace;
-
 namespace {
+
+using polemcl::apps::Pace;
 
 double seconds(ScanClock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
-
-}  // namespace
 
 TEST(Pace, ScansAreDueAsFarApartAsTheirTimesByTheRate) {
   Pace pace(100.0);
@@ -69,4 +65,5 @@ TEST(Pace, EndsWhenTheWindowIsClosed) {
   EXPECT_EQ(asked, 4);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pace

@@ -1,8 +1,5 @@
-/// \file test_PaperMode.cpp
-/// \brief config/paper is the authors' program: nothing beyond it is on, a kidnapped vehicle
-/// stays lost, and on its own detections of a real drive the errors are those it has.
-
-#include <cstdlib>
+// config/paper is the authors' program: nothing beyond it is on, a kidnapped vehicle
+// stays lost, and on its own detections of a real drive the errors are those it has.
 
 #include "cli/Settings.h"
 #include "import/ImportApp.h"
@@ -14,12 +11,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_paper_mode {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 constexpr double degree = M_PI / 180;
 
@@ -144,11 +139,7 @@ class Parity {
 
 class PaperModeOnKitti : public testing::Test {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("POLEMCL_DATA");
-    if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
-    m_data = data;
-  }
+  void SetUp() override { POLEMCL_NEEDS_DATA(); }
   std::vector<Pose2D> poses(const std::string& file) const {
     std::vector<Pose2D> result;
     for (const auto& pose : io::readKittiPoses(m_data / "kitti_raw_0005" / file))
@@ -172,10 +163,9 @@ class PaperModeOnKitti : public testing::Test {
   std::vector<std::vector<PoleDetection>> ourPoles(const AllSettings& settings) const {
     const TempFolder folder;
     const std::string rawlog = (folder / "all.rawlog").string();
-    const auto outcome =
-        runProgram(importMain,
-                   {"folder", "--input", (m_data / "kitti_raw_0005").string(), "--output", rawlog});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome =
+        succeeded(runProgram(importMain, {"folder", "--input", (m_data / "kitti_raw_0005").string(),
+                                          "--output", rawlog}));
     SequenceOptions options;
     options.extraction = settings.poleExtraction();
     std::vector<std::vector<PoleDetection>> poles;
@@ -189,10 +179,21 @@ class PaperModeOnKitti : public testing::Test {
                        "filter.particles=1000", "start.particles=1000"});
   }
 
-  fs::path m_data;
-};
+  void expectParity(const std::vector<std::vector<PoleDetection>>& poles) const {
+    ASSERT_EQ(poles.size(), 80u);
+    const AllSettings settings = protocol("paper/kitti.ini");
+    const Parity old(poses("poses_scan_matching.txt"), poles, settings);
+    EXPECT_LE(old.run(0.5, 20).mean, 0.038);
+    const auto wide = old.run(2.5, 20);
+    EXPECT_LE(wide.mean, 0.075);
+    EXPECT_LE(wide.most, 0.143);
+    const Parity now(poses("poses.txt"), poles, settings);
+    EXPECT_LE(now.run(0.5, 20).mean, 0.036);
+    EXPECT_LE(now.run(2.5, 20).mean, 0.070);
+  }
 
-}  // namespace
+  const fs::path m_data = dataFolder();
+};
 
 TEST(PaperMode, NothingBeyondThePaperIsOn) {
   for (const char* name : {"kitti", "kitti-mended", "nclt", "mulran"}) {
@@ -233,30 +234,12 @@ TEST(PaperMode, AKidnappedVehicleStaysLost) {
 // from 2.5 m and 0.032 m (0.021 to 0.047) from 0.5 m with poses_scan_matching.txt, 0.049 m and
 // 0.030 m with poses.txt.
 TEST_F(PaperModeOnKitti, LocalizesAsTheFirstImplementationOnItsPoles) {
-  const AllSettings settings = protocol("paper/kitti.ini");
-  const auto theirs = theirPoles();
-  const Parity old(poses("poses_scan_matching.txt"), theirs, settings);
-  EXPECT_LE(old.run(0.5, 20).mean, 0.038);
-  const auto wide = old.run(2.5, 20);
-  EXPECT_LE(wide.mean, 0.075);
-  EXPECT_LE(wide.most, 0.143);
-  const Parity now(poses("poses.txt"), theirs, settings);
-  EXPECT_LE(now.run(0.5, 20).mean, 0.036);
-  EXPECT_LE(now.run(2.5, 20).mean, 0.070);
+  expectParity(theirPoles());
 }
 
 TEST_F(PaperModeOnKitti, LocalizesAsTheFirstImplementationOnItsOwnPoles) {
-  const AllSettings settings = protocol("paper/kitti.ini");
-  const auto ours = ourPoles(settings);
-  ASSERT_EQ(ours.size(), 80u);
-  const Parity old(poses("poses_scan_matching.txt"), ours, settings);
-  EXPECT_LE(old.run(0.5, 20).mean, 0.038);
-  const auto wide = old.run(2.5, 20);
-  EXPECT_LE(wide.mean, 0.075);
-  EXPECT_LE(wide.most, 0.143);
-  const Parity now(poses("poses.txt"), ours, settings);
-  EXPECT_LE(now.run(0.5, 20).mean, 0.036);
-  EXPECT_LE(now.run(2.5, 20).mean, 0.070);
+  expectParity(ourPoles(protocol("paper/kitti.ini")));
 }
 
+}  // namespace
 }  // namespace polemcl::test_paper_mode

@@ -1,6 +1,5 @@
-/// \file test_PoseStream.cpp
-/// \brief `pole-localize --stream` and `--follow`: poses as they are made, also from a rawlog that
-/// still grows.
+// `pole-localize --stream` and `--follow`: poses as they are made, also from a rawlog that
+// still grows.
 
 #include <gtest/gtest.h>
 
@@ -13,10 +12,9 @@
 #include "support/Shell.h"
 
 namespace polemcl::test_pose_stream {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 class PoseStream : public LocalizeTest {
  protected:
@@ -33,8 +31,6 @@ class PoseStream : public LocalizeTest {
     return count;
   }
 };
-
-}  // namespace
 
 TEST_F(PoseStream, TellsWhatTheFilesTell) {
   ASSERT_EQ(runWithTruth({"--stream", (folder / "poses.jsonl").string()}).code, 0);
@@ -55,8 +51,7 @@ TEST_F(PoseStream, TellsWhatTheFilesTell) {
 }
 
 TEST_F(PoseStream, LeavesNothingElseOnStandardOutput) {
-  const auto outcome = run({"--global", "--stream", "-"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"--global", "--stream", "-"}));
   const auto all = lines(outcome.out);
   ASSERT_EQ(all.size(), scans);
   EXPECT_TRUE(all[0]["x_m"].is_null()) << "the pose is not known yet";
@@ -133,4 +128,5 @@ TEST_F(PoseStream, SaysWhereARawlogStoppedToGrow) {
   expectFailure(runWithTruth({"--follow", "0.05"}), {"in.rawlog", "ends inside an object"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_pose_stream

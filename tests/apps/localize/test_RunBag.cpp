@@ -1,5 +1,4 @@
-/// \file test_RunBag.cpp
-/// \brief `pole-localize --mcap`: the first run as a bag of ROS 2.
+// `pole-localize --mcap`: the first run as a bag of ROS 2.
 
 #include <gtest/gtest.h>
 
@@ -10,10 +9,9 @@
 #include "support/LocalizeTest.h"
 
 namespace polemcl::test_run_bag {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 class RunBag : public LocalizeTest {
  protected:
@@ -29,8 +27,6 @@ class RunBag : public LocalizeTest {
     return all;
   }
 };
-
-}  // namespace
 
 TEST_F(RunBag, HoldsThePosesOfTheFirstRun) {
   ASSERT_EQ(runWithTruth(toBag()).code, 0);
@@ -109,8 +105,7 @@ TEST_F(RunBag, HasTheSameBytesAndChangesNoResult) {
 
 TEST_F(RunBag, RefusesOtherNamesAndInputs) {
   EXPECT_EQ(runWithTruth({"--mcap", (folder / "run.bag").string()}).code, 2);
-  EXPECT_NE(runWithTruth({"--mcap", (folder / "run.bag").string()}).err.find("must end in .mcap"),
-            std::string::npos);
+  EXPECT_HAS(runWithTruth({"--mcap", (folder / "run.bag").string()}).err, "must end in .mcap");
   expectFailure(runWithTruth({"--mcap", (folder / "none" / "run.mcap").string()}), {"run.mcap"});
 }
 
@@ -123,4 +118,5 @@ TEST_F(RunBag, AppearsOnlyWithResults) {
   EXPECT_FALSE(fs::exists(file()));
 }
 
+}  // namespace
 }  // namespace polemcl::test_run_bag

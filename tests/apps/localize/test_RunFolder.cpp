@@ -10,11 +10,14 @@ using polemcl::apps::RunFolder;
 using namespace testing_apps;
 
 namespace {
-using Names = std::vector<std::string>;
-}
 
-TEST(RunFolder, SwapsOldRunsForNewOnesAndKeepsTheRest) {
+using Names = std::vector<std::string>;
+
+struct RunFolderTest : testing::Test {
   const TempFolder folder;
+};
+
+TEST_F(RunFolderTest, SwapsOldRunsForNewOnesAndKeepsTheRest) {
   for (const char* name : {"run_00.tum", "run_07_errors.csv", "summary.json", "config.ini", "mine"})
     writeText(folder / name, "old");
   {
@@ -32,8 +35,7 @@ TEST(RunFolder, SwapsOldRunsForNewOnesAndKeepsTheRest) {
   EXPECT_EQ(readText(folder / "mine"), "old");
 }
 
-TEST(RunFolder, WhatHasASummaryIsOnTheDisk) {
-  const TempFolder folder;
+TEST_F(RunFolderTest, WhatHasASummaryIsOnTheDisk) {
   writeText(folder / "summary.json", "old");
   RunFolder results(folder.path());
   writeText(results.staged("summary.json"), "new");
@@ -46,8 +48,7 @@ TEST(RunFolder, WhatHasASummaryIsOnTheDisk) {
       << "after the old summary is gone, before the new one comes, and at the end";
 }
 
-TEST(RunFolder, ScenesOfOldRunsGoAndOtherFoldersStay) {
-  const TempFolder folder;
+TEST_F(RunFolderTest, ScenesOfOldRunsGoAndOtherFoldersStay) {
   for (const char* name : {"run_00_scenes/000007.3Dscene", "run_03_scenes/a", "run_mine/a"})
     writeText(folder / name, "old");
   {
@@ -59,8 +60,7 @@ TEST(RunFolder, ScenesOfOldRunsGoAndOtherFoldersStay) {
   EXPECT_EQ(names(folder / "run_00_scenes"), Names({"000001.3Dscene"}));
 }
 
-TEST(RunFolder, KnowsWhatAKilledRunLeft) {
-  const TempFolder folder;
+TEST_F(RunFolderTest, KnowsWhatAKilledRunLeft) {
   const auto killed = [&] {
     const RunFolder results(folder.path());
     writeText(results.staged("run_00.tum"), "half");
@@ -73,8 +73,7 @@ TEST(RunFolder, KnowsWhatAKilledRunLeft) {
   EXPECT_EQ(readText(results.leftovers()[0] / "run_00.tum"), "half");
 }
 
-TEST(RunFolder, WithoutCommitTheOldStays) {
-  const TempFolder folder;
+TEST_F(RunFolderTest, WithoutCommitTheOldStays) {
   writeText(folder / "run_00.tum", "old");
   {
     RunFolder results(folder.path());
@@ -84,8 +83,7 @@ TEST(RunFolder, WithoutCommitTheOldStays) {
   EXPECT_EQ(readText(folder / "run_00.tum"), "old");
 }
 
-TEST(RunFolder, ANewFolderIsGoneAgainWithoutCommit) {
-  const TempFolder folder;
+TEST_F(RunFolderTest, ANewFolderIsGoneAgainWithoutCommit) {
   {
     RunFolder results(folder / "new");
     writeText(results.staged("run_00.tum"), "half");
@@ -93,8 +91,7 @@ TEST(RunFolder, ANewFolderIsGoneAgainWithoutCommit) {
   EXPECT_EQ(names(folder.path()), Names());
 }
 
-TEST(RunFolder, CreatesFoldersAbove) {
-  const TempFolder folder;
+TEST_F(RunFolderTest, CreatesFoldersAbove) {
   {
     RunFolder results(folder / "a/b");
     writeText(results.staged("summary.json"), "new");
@@ -103,8 +100,7 @@ TEST(RunFolder, CreatesFoldersAbove) {
   EXPECT_EQ(names(folder / "a/b"), Names({"summary.json"}));
 }
 
-TEST(RunFolder, KeepsFoldersThatOnlySoundLikeRuns) {
-  const TempFolder folder;
+TEST_F(RunFolderTest, KeepsFoldersThatOnlySoundLikeRuns) {
   fs::create_directory(folder / "run_scripts");
   {
     RunFolder results(folder.path());
@@ -114,15 +110,13 @@ TEST(RunFolder, KeepsFoldersThatOnlySoundLikeRuns) {
   EXPECT_EQ(names(folder.path()), Names({"run_scripts", "summary.json"}));
 }
 
-TEST(RunFolder, RefusesAFileInItsPlace) {
-  const TempFolder folder;
+TEST_F(RunFolderTest, RefusesAFileInItsPlace) {
   writeText(folder / "file", "");
   EXPECT_THROW(RunFolder(folder / "file"), polemcl::Error);
   EXPECT_THROW(RunFolder(folder / "file/below"), polemcl::Error);
 }
 
-TEST(RunFolder, WhatOthersCalledLikeARunStays) {
-  const TempFolder folder;
+TEST_F(RunFolderTest, WhatOthersCalledLikeARunStays) {
   for (const char* name : {"run_00.rawlog", "run_map.polemap", "run_1_notes.txt", "run_00.png"})
     writeText(folder / name, "mine");
   RunFolder(folder.path()).commit();
@@ -130,8 +124,8 @@ TEST(RunFolder, WhatOthersCalledLikeARunStays) {
             Names({"run_00.png", "run_00.rawlog", "run_1_notes.txt", "run_map.polemap"}));
 }
 
-TEST(RunFolder, RefusesToReplaceAnInput) {
-  const TempFolder folder, other;
+TEST_F(RunFolderTest, RefusesToReplaceAnInput) {
+  const TempFolder other;
   const RunFolder results(folder.path());
   for (const char* name : {"run_00.tum", "config.ini", "summary.json", "timings.json"}) {
     EXPECT_REFUSED(results.protect(folder / name), name);
@@ -141,8 +135,7 @@ TEST(RunFolder, RefusesToReplaceAnInput) {
   EXPECT_NO_THROW(results.protect(""));
 }
 
-TEST(RunFolder, FoldersInThePlaceOfResultsAreRefusedBeforeAnythingGoes) {
-  const TempFolder folder;
+TEST_F(RunFolderTest, FoldersInThePlaceOfResultsAreRefusedBeforeAnythingGoes) {
   for (const char* name : {"run_00.tum", "summary.json", "run_01.tum/mine"})
     writeText(folder / name, "old");
   {
@@ -156,4 +149,5 @@ TEST(RunFolder, FoldersInThePlaceOfResultsAreRefusedBeforeAnythingGoes) {
   EXPECT_EQ(readText(folder / "summary.json"), "old");
 }
 
+}  // namespace
 }  // namespace polemcl::test_run_folder

@@ -1,12 +1,10 @@
-/// \file test_TwoLidars.cpp
-/// \brief Two LiDARs on one vehicle, from the configuration to the summary.
+// Two LiDARs on one vehicle, from the configuration to the summary.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "cli/SensorCounts.h"
-#include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
 
 namespace testing_apps {
@@ -42,8 +40,7 @@ class TwoLidars : public LocalizeTest {
 };
 
 TEST_F(TwoLidars, ArePolesOfOneScan) {
-  const auto outcome = runWithTruth();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runWithTruth());
   const auto json = summary();
   EXPECT_EQ(json["scans"], scans);
   ASSERT_EQ(json["lidars"].size(), 2u);
@@ -81,8 +78,7 @@ TEST(SensorCounts, SayThatScansLookRaw) {
 }
 
 TEST_F(TwoLidars, WithoutNamesTheFirstIsUsedAndTheOtherIsNamed) {
-  const auto outcome = runWithTruth({"--set", "vehicle.lidars="});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runWithTruth({"--set", "vehicle.lidars="}));
   EXPECT_HAS(outcome.out,
              "scans of other sensors, not used: 39 (polemcl::CObservationPoles rear); "
              "[vehicle] lidars lists the sensor labels to use");

@@ -1,27 +1,22 @@
-/// \file test_DriveDoubts.cpp
-/// \brief pole-map build without true poses: what it says of an odometry that is wrong.
+// pole-map build without true poses: what it says of an odometry that is wrong.
 
 #include <sstream>
 
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
-#include "support/ExpectHas.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_drive_doubts {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class DriveDoubts : public StreetTest {
  protected:
   void driveWithFixes(std::size_t scans) {
-    writeStreet(folder / "in", scans);
-    import("in");
+    importStreet("in", scans);
     writeFixes();
   }
   /// Takes scans out of the rawlog; the odometry tells the way over the gap.
@@ -71,8 +66,6 @@ double certainTo(const std::string& report) {
   return std::stod(report.substr(report.find(before) + before.size()));
 }
 
-}  // namespace
-
 /// Five scans without poles in a drive without odometry: 0.1 s apart, so the motion goes on over
 /// them.
 TEST_F(DriveDoubts, ManyMotionsThatNothingTellsGiveAWarning) {
@@ -82,25 +75,21 @@ TEST_F(DriveDoubts, ManyMotionsThatNothingTellsGiveAWarning) {
   for (int i = 0; i < 30; ++i) times += io::fixed(50 + 0.1 * i, 3) + '\n';
   writeText(folder / "in" / "times.txt", times);
   import("in");
-  const auto whole = buildWithoutTruth();
-  ASSERT_EQ(whole.code, 0) << whole.err;
+  const Outcome whole = succeeded(buildWithoutTruth());
   const float ground[] = {10, 0, -1.7F, 0};
   EXPECT_EQ(whole.err.find("neither odometry nor poles"), std::string::npos) << whole.err;
   for (std::size_t i = 10; i < 15; ++i)
     writeText(folder / "in" / "velodyne" / scanName(i),
               {reinterpret_cast<const char*>(ground), 16});
   import("in");
-  const auto blind = buildWithoutTruth();
-  ASSERT_EQ(blind.code, 0) << blind.err;
+  const Outcome blind = succeeded(buildWithoutTruth());
   EXPECT_HAS(blind.err, "warning: in.rawlog: neither odometry nor poles tell 5 of its 29 motions");
   EXPECT_HAS(blind.out, "5 go on as before: look there, the first at 51.000 s");
 }
 
 TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
-  writeStreet(folder / "in", 30);
-  import("in");
-  const auto right = buildWithoutTruth();
-  ASSERT_EQ(right.code, 0) << right.err;
+  importStreet("in", 30);
+  const Outcome right = succeeded(buildWithoutTruth());
   EXPECT_EQ(right.err, "");
   EXPECT_EQ(info().count("warnings"), 0u);
   std::string rows;
@@ -109,8 +98,7 @@ TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
     rows += (++row == 15 ? "2.7 0 0 0.02 0.01 0.003" : line) + '\n';
   writeText(folder / "in" / "odometry.txt", rows);
   import("in");
-  const auto slipped = buildWithoutTruth();
-  ASSERT_EQ(slipped.code, 0) << slipped.err;
+  const Outcome slipped = succeeded(buildWithoutTruth());
   EXPECT_HAS(slipped.err,
              "warning: in.rawlog: the poles contradict 1 of the 29 motions of its odometry, the "
              "first at 53.000 s");
@@ -121,8 +109,7 @@ TEST_F(DriveDoubts, ASlipOfTheOdometryIsToldAndMended) {
 
 TEST_F(DriveDoubts, ALidarThatIsTurnedIsTold) {
   const std::string told = "warning: in.rawlog: as the poles pass, the LiDAR points 3.";
-  writeStreet(folder / "in", 30);
-  import("in");
+  importStreet("in", 30);
   EXPECT_EQ(buildWithoutTruth().err, "");
   std::string rows;  // to the left by 3.2°
   for (const std::string& line : io::readLines(folder / "in" / "odometry.txt")) {
@@ -145,16 +132,14 @@ TEST_F(DriveDoubts, ALidarThatIsTurnedIsTold) {
 
 TEST_F(DriveDoubts, PositionsOfAnotherClockAreTold) {
   driveWithFixes(60);
-  const auto right = buildWithoutTruth({"--gnss", at("fixes.csv")});
-  ASSERT_EQ(right.code, 0) << right.err;
+  const Outcome right = succeeded(buildWithoutTruth({"--gnss", at("fixes.csv")}));
   EXPECT_EQ(right.err, "");
   EXPECT_HAS(right.out, "placed by 59 positions from satellites;");
   EXPECT_HAS(right.out, "in.rawlog: its 59 positions from satellites lie 0.0");
   EXPECT_HAS(right.out, "m from its path (median), 0 of them do not fit");
   EXPECT_EQ(info().at("fixes"), "59");
   writeFixes([](double x) { return x < 25 ? x : std::min(2 * x - 25, 55.0); });
-  const auto late = buildWithoutTruth({"--gnss", at("fixes.csv")});
-  ASSERT_EQ(late.code, 0) << late.err;
+  const Outcome late = succeeded(buildWithoutTruth({"--gnss", at("fixes.csv")}));
   EXPECT_HAS(late.err, "of 59 positions from satellites do not fit its path, they lie ");
   EXPECT_HAS(late.err, "may lie wrong on Earth by far more");
   EXPECT_GT(certainTo(late.out), 5 * certainTo(right.out));
@@ -180,8 +165,7 @@ TEST_F(DriveDoubts, PositionsBetweenScansThatAreLateButNearAreUsed) {
   writeText(folder / "in" / "times.txt", slow);
   import("in");
   writeFixes([](double x) { return x; });
-  const auto near = buildWithoutTruth({"--gnss", at("fixes.csv")});
-  ASSERT_EQ(near.code, 0) << near.err;
+  const Outcome near = succeeded(buildWithoutTruth({"--gnss", at("fixes.csv")}));
   EXPECT_HAS(near.out, "placed by 59 positions");
   EXPECT_EQ(near.out.find("left out"), std::string::npos) << near.out;
 }
@@ -190,8 +174,7 @@ TEST_F(DriveDoubts, PositionsBetweenScansThatAreLateButNearAreUsed) {
 TEST_F(DriveDoubts, PositionsBetweenScansFarApartAreCounted) {
   driveWithFixes(60);
   leaveOut(30, 44);
-  const auto gap = buildWithoutTruth({"--gnss", at("fixes.csv")});
-  ASSERT_EQ(gap.code, 0) << gap.err;
+  const Outcome gap = succeeded(buildWithoutTruth({"--gnss", at("fixes.csv")}));
   EXPECT_HAS(gap.out, "placed by 44 positions");
   EXPECT_HAS(gap.out,
              "in.rawlog: left out 15 positions from satellites between scans more than 2 s and 10 "
@@ -202,4 +185,5 @@ TEST_F(DriveDoubts, PositionsBetweenScansFarApartAreCounted) {
                 {"few.csv: all 2 of its positions", "more than 2 s and 10 m apart"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_drive_doubts

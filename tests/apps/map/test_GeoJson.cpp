@@ -12,10 +12,9 @@
 #include "support/Samples.h"
 
 namespace polemcl::test_geo_json {
+namespace {
 
 using namespace polemcl::apps;
-
-namespace {
 
 io::PoleMapData sample() {
   io::PoleMapData map;
@@ -53,7 +52,7 @@ class GeoJson : public testing::Test {
     EXPECT_EQ(message.rfind(file, 0), 0u) << message;
     return message;
   }
-  samples::Folder folder{"GeoJson"};
+  testing_apps::TempFolder folder;
 };
 
 std::string multiPoint(const std::string& places) {
@@ -69,8 +68,6 @@ std::string point(const std::string& coordinates, const std::string& properties 
 }
 
 const io::Datum home{50, 8, 0};
-
-}  // namespace
 
 TEST_F(GeoJson, MapsComeBackBelowAMillimetre) {
   const io::PoleMapData before = sample();
@@ -181,4 +178,5 @@ TEST_F(GeoJson, RefusesWhatIsNone) {
              "texts by name");
 }
 
+}  // namespace
 }  // namespace polemcl::test_geo_json

@@ -9,18 +9,15 @@
 #include "map/MapApp.h"
 #include "map/MapBuildReport.h"
 #include "mrpt/rawlog/GnssFixes.h"
-#include "support/ExpectHas.h"
 #include "support/IoFiles.h"
 #include "support/Samples.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_app {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class MapApp : public StreetTest {
  protected:
@@ -52,21 +49,17 @@ void expectTruePoles(const std::vector<MapPole>& poles) {
   }
 }
 
-}  // namespace
-
 TEST_F(MapApp, MapsTheStreet) {
   drive("in", 12);
-  const auto outcome = run({"in"}, {"--csv", at("street.csv"), "--scene", at("street.3Dscene")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome =
+      succeeded(run({"in"}, {"--csv", at("street.csv"), "--scene", at("street.3Dscene")}));
   const auto map = io::readPoleMap(folder / "street.polemap");
   expectTruePoles(map.poles);
   EXPECT_GE(map.poles.size(), 8u);
   EXPECT_EQ(map.info.at("scans"), "12");
   EXPECT_EQ(map.info.at("inputs"), "in.rawlog");
   EXPECT_NE(map.info.at("config").find("section_length_m"), std::string::npos);
-  EXPECT_NE(outcome.out.find(std::to_string(map.poles.size()) + " poles from 12 scans over 11.0 m"),
-            std::string::npos)
-      << outcome.out;
+  EXPECT_HAS(outcome.out, std::to_string(map.poles.size()) + " poles from 12 scans over 11.0 m");
   EXPECT_EQ(io::readPolePositions(folder / "street.csv").size(), map.poles.size());
   EXPECT_EQ(readText(folder / "street.csv").rfind("x,y,radius,count,", 0), 0u);
   EXPECT_GT(fs::file_size(folder / "street.3Dscene"), 1000u);
@@ -99,8 +92,7 @@ TEST_F(MapApp, WithoutTruthOdometryAndPolesGiveThePoses) {
   import.odometryNoise = 0.02;
   import.odometryScale = 0.03;
   importDataset(import);
-  const auto outcome = buildWithoutTruth({"--png", at("map.png")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(buildWithoutTruth({"--png", at("map.png")}));
   EXPECT_NE(outcome.out.find("poses by odometry"), std::string::npos) << outcome.out;
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("poses"), "odometry");
   const auto truth = io::readPlanarTum(folder / "in.tum"),
@@ -134,8 +126,7 @@ TEST_F(MapApp, WithoutTruthDrivesOfAStreetShareAMap) {
   const auto build = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"build", "--config", config()};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const auto outcome = runProgram(mapMain, arguments);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome = succeeded(runProgram(mapMain, arguments));
     return outcome.out;
   };
   const auto expectPlaces = [&](const std::string& file) {
@@ -170,8 +161,8 @@ TEST_F(MapApp, PositionsFromSatellitesGiveTheDatum) {
   import("in");
   writeFixes();
   const std::string fixes = readText(folder / "fixes.csv");
-  const auto outcome = buildWithoutTruth({"--gnss", at("fixes.csv"), "--datum", "48,9"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome =
+      succeeded(buildWithoutTruth({"--gnss", at("fixes.csv"), "--datum", "48,9"}));
   EXPECT_NE(outcome.out.find("placed by 59 positions"), std::string::npos) << outcome.out;
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum"), "48,9,0");
   const auto truth = io::readPlanarTum(folder / "in.tum"),
@@ -218,14 +209,12 @@ TEST_F(MapApp, WithoutTruthOdometryOrPolesTellTheWay) {
   fs::remove(folder / "in" / "odometry.txt");
   import("in");
   const auto build = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"build",        "--config",           config(),
-                                       "--output",     at("street.polemap"), "--input",
-                                       at("in.rawlog")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
+    return runProgram(mapMain,
+                      {"build", "--config", config(), "--output", at("street.polemap"), "--input",
+                       at("in.rawlog")},
+                      more);
   };
-  const auto outcome = build({});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(build({}));
   EXPECT_EQ(outcome.out.find("poses by odometry"), std::string::npos);
   EXPECT_HAS(outcome.out, "in.rawlog: no odometry leads to 19 scans; the poles told the way to 19");
   EXPECT_EQ(outcome.out.find("its odometry is"), std::string::npos);
@@ -261,8 +250,7 @@ TEST_F(MapApp, SeveralDrivesMakeOneMap) {
   drive("two", 10, 500, 30);  // farther on, another day
   ASSERT_EQ(run({"one"}).code, 0);
   const auto first = io::readPoleMap(folder / "street.polemap").poles.size();
-  const auto outcome = run({"one", "two"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"one", "two"}));
   const auto both = io::readPoleMap(folder / "street.polemap");
   expectTruePoles(both.poles);
   EXPECT_GT(both.poles.size(), first);
@@ -291,8 +279,7 @@ TEST_F(MapApp, ScansWithoutTruthAreCountedAndLeftOut) {
   auto truth = io::readTum(folder / "in.tum");
   truth.resize(10);
   io::writeTum(folder / "in.tum", truth);
-  const auto outcome = run({"in"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"in"}));
   EXPECT_NE(outcome.out.find("without a pose, not used: 3"), std::string::npos) << outcome.out;
 }
 
@@ -326,8 +313,7 @@ TEST_F(MapApp, AgreesWithATrueDrive) {
   drive("in", 12);
   const auto outcome = run({"in"});
   EXPECT_EQ(outcome.err, "");
-  EXPECT_NE(outcome.out.find("in.rawlog: the poles agree with these poses"), std::string::npos)
-      << outcome.out;
+  EXPECT_HAS(outcome.out, "in.rawlog: the poles agree with these poses");
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.count("warnings"), 0u);
 }
 
@@ -337,8 +323,7 @@ TEST_F(MapApp, WarnsOfTheTruthOfAnotherDrive) {
   for (std::size_t i = 0; i < truth.size(); ++i)  // of a slower one, at the same times
     truth[i].pose.translation().x() *= 0.8;
   io::writeTum(folder / "in.tum", truth);
-  const auto outcome = run({"in"}, {"--set", "map.min_count=1"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"in"}, {"--set", "map.min_count=1"}));
   for (const char* part :
        {"warning: in.rawlog: the poles contradict these poses: truth of another "
         "drive or in another frame, wrong time or wrong scan timing (in 3 of 3 stretches)",
@@ -375,12 +360,9 @@ TEST_F(MapApp, NotesTwinPoles) {
   for (std::size_t i = truth.size(); i-- > 1;)
     if (i % 4 > 1) truth[i].pose.translation().x() -= 0.7;
   io::writeTum(folder / "in.tum", truth);
-  const auto outcome = run({"in"}, {"--set", "map.min_count=1"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"in"}, {"--set", "map.min_count=1"}));
   EXPECT_NE(outcome.out.find("the poles agree"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.err.find("poles have a twin nearer than 1 m (the scans are 0."),
-            std::string::npos)
-      << outcome.err;
+  EXPECT_HAS(outcome.err, "poles have a twin nearer than 1 m (the scans are 0.");
 }
 
 TEST_F(MapApp, NamesTheCountWhenNoPoleIsSeenOftenEnough) {
@@ -411,8 +393,7 @@ TEST_F(MapApp, RefusesATruncatedRawlogUnlessAllowed) {
   fs::resize_file(folder / "in.rawlog", fs::file_size(folder / "in.rawlog") - 1000);
   expectFailure(run({"in"}), {"in.rawlog"});
   EXPECT_FALSE(hasMap());
-  const auto outcome = run({"in"}, {"--allow-truncated"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(run({"in"}, {"--allow-truncated"}));
   EXPECT_NE(outcome.out.find("from 7 scans"), std::string::npos) << outcome.out;
 }
 
@@ -438,11 +419,11 @@ TEST_F(MapApp, WrongUsage) {
   for (const std::vector<std::string>& none : {std::vector<std::string>(), {"--config", "c"}}) {
     const Outcome outcome = runProgram(mapMain, none);
     expectUsageError(outcome);
-    EXPECT_NE(outcome.err.find("needed: build, update, diff, convert"), std::string::npos)
-        << outcome.err;
+    EXPECT_HAS(outcome.err, "needed: build, update, diff, convert");
   }
   expectUsageError(runProgram(mapMain, {"build", "--config", "c", "--input", "a", "b", "--truth",
                                         "a", "--output", "m.polemap"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_app

@@ -8,12 +8,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_map_convert_app {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class MapConvertApp : public testing::Test {
  protected:
@@ -36,16 +34,12 @@ class MapConvertApp : public testing::Test {
   }
   Outcome convert(const std::string& from, const std::string& to,
                   const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"convert", (folder / from).string(), "--output",
-                                       (folder / to).string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
+    return runProgram(
+        mapMain, {"convert", (folder / from).string(), "--output", (folder / to).string()}, more);
   }
   TempFolder folder;
   AddedSessions scans;
 };
-
-}  // namespace
 
 TEST_F(MapConvertApp, GoesThroughEveryKindOfFile) {
   const std::vector<std::string> datum{"--datum", "42.25,-83.5,12"};
@@ -54,8 +48,8 @@ TEST_F(MapConvertApp, GoesThroughEveryKindOfFile) {
        {"a.geojson", "b.csv", "c.polemap", "d.csv", "e.geojson", "f.polemap"}) {
     SCOPED_TRACE(to);
     const bool needsDatum = to == "a.geojson" || to == "e.geojson";
-    const auto outcome = convert(from, to, needsDatum ? datum : std::vector<std::string>());
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome =
+        succeeded(convert(from, to, needsDatum ? datum : std::vector<std::string>()));
     EXPECT_NE(outcome.out.find(to + ": 5 poles"), std::string::npos) << outcome.out;
     from = to;
   }
@@ -85,8 +79,7 @@ TEST_F(MapConvertApp, ReadsMapAndScansAtOnceAsAnotherMayReplaceThem) {
 }
 
 TEST_F(MapConvertApp, GivesAMapItsDatumAndKeepsTheRest) {
-  const auto outcome = convert("m.polemap", "m.polemap", {"--datum", "50,8"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(convert("m.polemap", "m.polemap", {"--datum", "50,8"}));
   std::optional<AddedSessions> kept;
   const auto map = io::readPoleMap(folder / "m.polemap", &kept);
   EXPECT_EQ(map.info.at("datum"), "50,8,0");
@@ -100,9 +93,7 @@ TEST_F(MapConvertApp, GivesAMapItsDatumAndKeepsTheRest) {
 
 TEST_F(MapConvertApp, TellsWhatIsLeftOut) {
   const auto outcome = convert("m.polemap", "m.csv");
-  EXPECT_NE(outcome.out.find("candidates, which are not on the map, left out: 1"),
-            std::string::npos)
-      << outcome.out;
+  EXPECT_HAS(outcome.out, "candidates, which are not on the map, left out: 1");
   EXPECT_EQ(convert("m.polemap", "m.csv", {"--quiet"}).out, "");
 }
 
@@ -126,4 +117,5 @@ TEST_F(MapConvertApp, WrongUsage) {
   expectUsageError(runProgram(mapMain, {"convert", "a.csv", "--output", "c", "--config", "b"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_convert_app

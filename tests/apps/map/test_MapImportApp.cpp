@@ -4,28 +4,24 @@
 #include <fstream>
 
 #include "io/map/PoleMapFile.h"
-#include "map/GeoJson.h"
 #include "map/MapApp.h"
-#include "support/ExpectHas.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_map_import_app {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 class MapImportApp : public testing::Test {
  protected:
   Outcome import(const std::string& name, const std::string& text,
                  const std::vector<std::string>& more = {}) {
     std::ofstream(folder / name) << text;
-    std::vector<std::string> arguments{"import", "--input", (folder / name).string(), "--output",
-                                       (folder / "m.polemap").string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
+    return runProgram(mapMain,
+                      {"import", "--input", (folder / name).string(), "--output",
+                       (folder / "m.polemap").string()},
+                      more);
   }
   /// Error of a run that must fail and write nothing.
   std::string failure(const std::string& name, const std::string& text,
@@ -59,14 +55,11 @@ const char* const kOsm = R"(<?xml version="1.0"?>
 </osm>
 )";
 
-}  // namespace
-
 TEST_F(MapImportApp, TablesInUtmKeepDistancesAndRadii) {
   std::vector<std::string> options = kUtmOptions;
   options.insert(options.end(), {"--radius-property", "Umfang cm", "--radius-unit", "0.00159155",
                                  "--sigma-m", "0.3"});
-  const Outcome outcome = import("a.csv", kUtm, options);
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(import("a.csv", kUtm, options));
   EXPECT_HAS(outcome.out, "2 poles");
   EXPECT_HAS(outcome.out, "left out: 1");
   const auto data = map();
@@ -93,8 +86,7 @@ TEST_F(MapImportApp, PointsOfGeoJsonWithOtherPeoplesProperties) {
       {"type":"Feature","geometry":{"type":"Point","coordinates":[13.0001,52]},
        "properties":{"art":"Bank"}}]})";
   const Outcome outcome =
-      import("a.geojson", json, {"--keep", "art=Mast", "--datum", "52,12.9999,90"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+      succeeded(import("a.geojson", json, {"--keep", "art=Mast", "--datum", "52,12.9999,90"}));
   EXPECT_HAS(outcome.out, "not kept: 2");
   const auto data = map();
   ASSERT_EQ(data.poles.size(), 1u);
@@ -173,4 +165,5 @@ TEST_F(MapImportApp, BadInventoriesAreRefusedWithTheirPlace) {
   EXPECT_EQ(import("a.csv", kUtm, {"--columns", "a"}).code, 2);
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_import_app

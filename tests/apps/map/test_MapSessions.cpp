@@ -1,5 +1,4 @@
-/// \file test_MapSessions.cpp
-/// \brief pole-map with several sessions: the paper's protocol, and sessions added one by one.
+// pole-map with several sessions: the paper's protocol, and sessions added one by one.
 
 #include "extract/ExtractApp.h"
 #include "io/file/Bytes.h"
@@ -9,12 +8,10 @@
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_sessions {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// Three sessions on one street: along half of it, a bit farther, all of it and beyond.
 class MapSessions : public StreetTest {
@@ -66,19 +63,15 @@ class MapSessions : public StreetTest {
   }
 };
 
-}  // namespace
-
 TEST_F(MapSessions, ThePaperTakesLaterSessionsWhereNobodyHasBeen) {
-  const auto outcome = map("paper.ini", {"one", "two", "three"}, "m.polemap");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(map("paper.ini", {"one", "two", "three"}, "m.polemap"));
   const auto info = io::readPoleMap(folder / "m.polemap").info;
   // One ends at 11 m: two has nothing beyond 21 m; two ends at 17 m: three is new beyond 27 m.
   EXPECT_EQ(info.at("f_map.one"), "1.000000");
   EXPECT_EQ(info.at("f_map.two"), "0.000000");
   EXPECT_EQ(info.at("f_map.three"), "0.000000");
   EXPECT_EQ(info.at("scans"), "12");
-  EXPECT_NE(outcome.out.find("two.rawlog: 0 of 10 scans used, f_map 0.0000"), std::string::npos)
-      << outcome.out;
+  EXPECT_HAS(outcome.out, "two.rawlog: 0 of 10 scans used, f_map 0.0000");
   ASSERT_EQ(map("paper.ini", {"one", "three"}, "m.polemap").code, 0);
   // 22 … 27 m of 20 scans, whose first is at 8 m.
   EXPECT_EQ(io::readPoleMap(folder / "m.polemap").info.at("f_map.three"), "0.300000");
@@ -86,8 +79,7 @@ TEST_F(MapSessions, ThePaperTakesLaterSessionsWhereNobodyHasBeen) {
 }
 
 TEST_F(MapSessions, EverythingIsUsedUnlessAsked) {
-  const auto outcome = map("all.ini", {"one", "three"}, "m.polemap");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(map("all.ini", {"one", "three"}, "m.polemap"));
   EXPECT_EQ(io::readPoleMap(folder / "m.polemap").info.at("f_map.three"), "1.000000");
   EXPECT_EQ(chunk("m.polemap", "SCAN"), "");
 }
@@ -100,8 +92,8 @@ TEST_F(MapSessions, AddedOneByOneTheyGiveTheMapOfAllAtOnce) {
     ASSERT_EQ(map(ini, {"one"}, "m.polemap", {"--keep-scans", "--date", days[1]}).code, 0);
     ASSERT_EQ(map(ini, {"three"}, "m.polemap", {"--add", at("m.polemap"), "--date", days[2]}).code,
               0);
-    const auto last = map(ini, {"two"}, "m.polemap", {"--add", at("m.polemap"), "--date", days[3]});
-    ASSERT_EQ(last.code, 0) << last.err;
+    const Outcome last =
+        succeeded(map(ini, {"two"}, "m.polemap", {"--add", at("m.polemap"), "--date", days[3]}));
     EXPECT_EQ(chunk("m.polemap", "POLE"), chunk("all.polemap", "POLE"));
     EXPECT_EQ(chunk("m.polemap", "INFO"), chunk("all.polemap", "INFO"));
     EXPECT_GT(chunk("m.polemap", "POLE").size(), 500u);
@@ -174,4 +166,5 @@ TEST_F(MapSessions, WrongUsage) {
   expectUsageError(runProgram(mapMain, {"build", "--add", "a.polemap"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_sessions

@@ -7,16 +7,13 @@
 #include "io/data/Trajectory.h"
 #include "io/map/PoleMapFile.h"
 #include "map/MapApp.h"
-#include "map/MapUpdateApp.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_update_app {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 /// A street on the day of the map; on the next day one pole is gone, one has come, one has moved.
 class MapUpdateApp : public StreetTest {
@@ -36,26 +33,28 @@ class MapUpdateApp : public StreetTest {
   }
   void mapYesterday() {
     drive("day0", yesterday);
-    const auto outcome =
-        runProgram(mapMain, {"build", "--config", config(), "--input", at("day0.rawlog"), "--truth",
-                             at("day0.tum"), "--date", "2026-03-01", "--output", at("day0.polemap"),
-                             "--csv", at("m.csv")});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome =
+        succeeded(runProgram(mapMain, {"build", "--config", config(), "--input", at("day0.rawlog"),
+                                       "--truth", at("day0.tum"), "--date", "2026-03-01",
+                                       "--output", at("day0.polemap"), "--csv", at("m.csv")}));
+  }
+  void mapYesterdayAndDriveToday() {
+    mapYesterday();
+    drive("day1", today);
   }
   Outcome update(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"update",           "--config", config(),          "--map",
-                                       at("day0.polemap"), "--input",  at("day1.rawlog"), "--truth",
-                                       at("day1.tum"),     "--output", at("day1.polemap")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
+    return runProgram(
+        mapMain,
+        {"update", "--config", config(), "--map", at("day0.polemap"), "--input", at("day1.rawlog"),
+         "--truth", at("day1.tum"), "--output", at("day1.polemap")},
+        more);
   }
   Outcome updateByRun(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"update",          "--config",         config(),
-                                       "--map",           at("day0.polemap"), "--input",
-                                       at("day1.rawlog"), "--estimate",       at("run_00.tum"),
-                                       "--output",        at("day1.polemap")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(mapMain, arguments);
+    return runProgram(
+        mapMain,
+        {"update", "--config", config(), "--map", at("day0.polemap"), "--input", at("day1.rawlog"),
+         "--estimate", at("run_00.tum"), "--output", at("day1.polemap")},
+        more);
   }
   /// Files of a run of pole-localize over day1 that estimated the true poses.
   /// \param state From scan `doubtful` on; `lost` before. \param shift Added to all times, s.
@@ -82,8 +81,6 @@ class MapUpdateApp : public StreetTest {
   std::vector<StreetPole> yesterday, today;
 };
 
-}  // namespace
-
 TEST_F(MapUpdateApp, AFreshMapTellsWhenItsPolesWereSeen) {
   mapYesterday();
   const auto map = io::readPoleMap(folder / "day0.polemap");
@@ -96,11 +93,9 @@ TEST_F(MapUpdateApp, AFreshMapTellsWhenItsPolesWereSeen) {
 }
 
 TEST_F(MapUpdateApp, TheMapFollowsTheStreet) {
-  mapYesterday();
-  drive("day1", today);
-  const auto outcome =
-      update({"--date", "2026-03-02", "--csv", at("new.csv"), "--scene", at("new.3Dscene")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  mapYesterdayAndDriveToday();
+  const Outcome outcome = succeeded(
+      update({"--date", "2026-03-02", "--csv", at("new.csv"), "--scene", at("new.3Dscene")}));
   const auto before = io::readPoleMap(folder / "day0.polemap").poles;
   const auto after = io::readPoleMap(folder / "day1.polemap");
   ASSERT_TRUE(has(before, 9, 6) && has(before, 13, -7));
@@ -117,13 +112,11 @@ TEST_F(MapUpdateApp, TheMapFollowsTheStreet) {
 }
 
 TEST_F(MapUpdateApp, ListsAndDrawsWhatChanged) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   ASSERT_EQ(update().code, 0);
-  const auto outcome =
+  const Outcome outcome = succeeded(
       runProgram(mapMain, {"diff", at("day0.polemap"), at("day1.polemap"), "--png", at("d.png"),
-                           "--scene", at("d.3Dscene"), "--csv", at("d.csv")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+                           "--scene", at("d.3Dscene"), "--csv", at("d.csv")}));
   EXPECT_NE(outcome.out.find("1 vanished, 1 moved"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("(1.0"), std::string::npos) << outcome.out;
   const std::string csv = readText(folder / "d.csv");
@@ -159,8 +152,7 @@ TEST_F(MapUpdateApp, RefusesASessionOfAnotherPlace) {
 }
 
 TEST_F(MapUpdateApp, RefusesASessionInAnotherFrame) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   auto truth = io::planar(io::readTum(folder / "day1.tum"));
   for (auto& pose : truth) pose.pose.y += 20000;
   io::writeTum(folder / "day1.tum", truth);
@@ -168,8 +160,7 @@ TEST_F(MapUpdateApp, RefusesASessionInAnotherFrame) {
 }
 
 TEST_F(MapUpdateApp, RefusesASessionOfAnEarlierDay) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   expectFailure(update({"--date", "2026-02-28"}),
                 {"day1.rawlog", "is of 2026-02-28", "day0.polemap of 2026-03-01", "--date"});
   EXPECT_EQ(update({"--date", "2026-03-01"}).code, 0);
@@ -186,13 +177,11 @@ TEST_F(MapUpdateApp, RefusesBadFilesAndDates) {
 
 // The run of a localizer serves instead of the truth. Where it was not ok, nothing changes.
 TEST_F(MapUpdateApp, TakesTheLocalizersOwnPoses) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   ASSERT_EQ(update({"--json", at("truth.json")}).code, 0);
   const std::string byTruth = readText(folder / "day1.polemap");
   writeRun("ok", 1e-6);
-  const auto outcome = updateByRun({"--json", at("update.json")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(updateByRun({"--json", at("update.json")}));
   const auto after = io::readPoleMap(folder / "day1.polemap");
   EXPECT_TRUE(has(after.poles, 9, 7));
   EXPECT_FALSE(has(after.poles, 13, -7));
@@ -206,15 +195,13 @@ TEST_F(MapUpdateApp, TakesTheLocalizersOwnPoses) {
 }
 
 TEST_F(MapUpdateApp, DoubtfulPosesDoNotChangeTheMap) {
-  mapYesterday();
-  drive("day1", today);
+  mapYesterdayAndDriveToday();
   writeRun("degraded", 1e-6);
   expectFailure(updateByRun(), {"day1.rawlog", "25 at which the localizer was not ok"});
   writeRun("ok", 0.09);  // 0.3 m
   expectFailure(updateByRun(), {"day1.rawlog", "all 25 poses", "above 0.25 m"});
   writeRun("ok", 1e-6, 7);
-  const auto outcome = updateByRun();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(updateByRun());
   EXPECT_NE(outcome.out.find("not ok, not used: 7"), std::string::npos) << outcome.out;
   writeRun("ok", 1e-6, 0, 5);
   expectFailure(updateByRun(), {"run_00.tum", "scan 0", "is it a run over this rawlog"});
@@ -248,8 +235,7 @@ TEST_F(MapUpdateApp, AnInventoryBecomesAsExactAsTheLidar) {
                                        at("exact.polemap")};
   auto arguments = build;
   arguments.insert(arguments.end(), {"--estimate", at("run_00.tum")});
-  const auto outcome = runProgram(mapMain, arguments);
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = succeeded(runProgram(mapMain, arguments));
   EXPECT_NE(outcome.out.find("out of sight, kept: 1"), std::string::npos) << outcome.out;
   const auto map = io::readPoleMap(folder / "exact.polemap");
   EXPECT_EQ(map.info.at("datum"), "52,13,0");
@@ -281,10 +267,8 @@ TEST_F(MapUpdateApp, AnInventoryBecomesAsExactAsTheLidar) {
 }
 
 TEST_F(MapUpdateApp, WarnsWhenManyPolesHaveMoved) {
-  mapYesterday();
-  drive("day1", today);  // 1 of about 12 moved
-  const auto outcome = update({"--quiet", "--json", at("update.json")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  mapYesterdayAndDriveToday();  // 1 of about 12 moved
+  const Outcome outcome = succeeded(update({"--quiet", "--json", at("update.json")}));
   EXPECT_NE(outcome.err.find("pole-map: warning: "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("seem to have moved"), std::string::npos) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
@@ -317,4 +301,5 @@ TEST_F(MapUpdateApp, WrongUsage) {
   expectUsageError(runProgram(mapMain, {"diff", "a", "b", "--csv", "c", "--png", "./c"}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_update_app

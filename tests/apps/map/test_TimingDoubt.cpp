@@ -1,5 +1,4 @@
-/// \file test_TimingDoubt.cpp
-/// \brief What pole-map build says of drives whose timing is wrong.
+// What pole-map build says of drives whose timing is wrong.
 
 #include <gtest/gtest.h>
 
@@ -8,11 +7,9 @@
 #include "support/TimedDrive.h"
 
 namespace polemcl::test_timing_doubt {
-
-using namespace polemcl;
-using namespace polemcl::apps;
-
 namespace {
+
+using namespace polemcl::apps;
 
 /// The poses are those of the simulator, so they are dead reckoning without an error.
 MappingSession session(const ScanTiming& truth) {
@@ -39,8 +36,6 @@ TimingEstimate with(Turn turn, double clock, double significance = 0) {
 }
 
 const TimingEstimate kNothing = with(Turn::compensated, 0);
-
-}  // namespace
 
 TEST(TimingDoubt, SeesClocksThatDiffer) {
   ScanTiming late{Turn::compensated};
@@ -106,4 +101,5 @@ TEST(TimingDoubt, OfAdjustedPosesOnlyTheTurnCounts) {
              "not look corrected for the motion during a turn (6.2 standard errors)");
 }
 
+}  // namespace
 }  // namespace polemcl::test_timing_doubt

@@ -10,12 +10,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_sensor_models {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
-
-namespace {
 
 struct Sensor {
   std::string name, keys;  ///< keys of `[sensor]`
@@ -65,8 +63,6 @@ class SensorModels : public testing::TestWithParam<Sensor> {
 std::string nameOf(const testing::TestParamInfo<Sensor>& info) {
   return info.param.name;
 }
-
-}  // namespace
 
 TEST_P(SensorModels, ServesEveryProgram) {
   const std::string c = at("s.ini"), scans = at("s.rawlog"), poles = at("p.rawlog"),
@@ -124,11 +120,11 @@ TEST(SensorModelsOfDetections, AModelServesTheBeamsItWasFittedFor) {
                   "\n[world]\nlength_m = 40\n");
     return runProgram(simulateMain, {"--config", at("s.ini"), "--poles", at("p.rawlog")});
   };
-  const Outcome same = simulate("12 4 -2 -8");
-  EXPECT_EQ(same.code, 0) << same.err;
+  const Outcome same = succeeded(simulate("12 4 -2 -8"));
   expectFailure(simulate("12 4 -2 -9"),
                 {"m.json", "table of 4 beams from 12 to -8 deg",
                  "table of 4 beams from 12 to -9 deg", "fit_detections.py"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_sensor_models

@@ -5,12 +5,11 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_simulate_app {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 
-namespace {
 class SimulateApp : public testing::Test {
  protected:
   SimulateApp() { configure("vlp16\nheight_m = 1.2"); }
@@ -19,19 +18,14 @@ class SimulateApp : public testing::Test {
               "[sensor]\nmodel = " + model + "\n[simulation]\nscans = 3\n[world]\nlength_m = 40\n");
   }
   Outcome run(std::vector<std::string> extra = {}) {
-    std::vector<std::string> arguments{"--config", at("street.ini"), "--output", at("drive")};
-    arguments.insert(arguments.end(), extra.begin(), extra.end());
-    return runProgram(simulateMain, arguments);
+    return runProgram(simulateMain, {"--config", at("street.ini"), "--output", at("drive")}, extra);
   }
   std::string at(const std::string& name) { return (folder / name).string(); }
   TempFolder folder;
 };
-}  // namespace
-
 TEST_F(SimulateApp, WritesTheFolderLayoutAndTheEffectiveSettings) {
   const Outcome outcome =
-      run({"--seed", "7", "--day", "2", "--length", "50", "--sensor", "os1_64"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+      succeeded(run({"--seed", "7", "--day", "2", "--length", "50", "--sensor", "os1_64"}));
   EXPECT_NE(outcome.out.find("3 scans over 1.0 m"), std::string::npos) << outcome.out;
   EXPECT_EQ(names(folder / "drive"),
             (std::vector<std::string>{"config.ini", "labels", "odometry.txt", "poles_gt.csv",
@@ -110,4 +104,5 @@ TEST_F(SimulateApp, QuietSaysNothing) {
   EXPECT_EQ(outcome.out + outcome.err, "");
 }
 
+}  // namespace
 }  // namespace polemcl::test_simulate_app

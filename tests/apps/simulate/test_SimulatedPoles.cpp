@@ -5,19 +5,18 @@
 #include "import/DatasetImport.h"
 #include "io/data/Trajectory.h"
 #include "io/file/CsvTable.h"
-#include "io/map/PoleTables.h"
 #include "mrpt/rawlog/PoleSequence.h"
 #include "simulate/SimulateApp.h"
 #include "support/DiskCalls.h"
+#include "support/Poles.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_simulated_poles {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::apps;
 using namespace testing_apps;
 
-namespace {
 const std::string kModel = std::string(POLEMCL_SOURCE_DIR) + "/share/models/hdl32e.json";
 
 class SimulatedPoles : public testing::Test {
@@ -28,25 +27,14 @@ class SimulatedPoles : public testing::Test {
                   simulation + "[world]\n" + world);
   }
   Outcome run(const std::string& rawlog, std::vector<std::string> extra = {}) {
-    std::vector<std::string> arguments{"--config", at("street.ini"), "--poles", at(rawlog)};
-    arguments.insert(arguments.end(), extra.begin(), extra.end());
-    return runProgram(simulateMain, arguments);
+    return runProgram(simulateMain, {"--config", at("street.ini"), "--poles", at(rawlog)}, extra);
   }
   std::string at(const std::string& name) { return (folder / name).string(); }
   PoleSequence read(const std::string& name) { return readPoleSequence(at(name), {}); }
   TempFolder folder;
 };
 
-void expectSame(const PoleDetection& a, const PoleDetection& b) {
-  EXPECT_EQ(a.x, b.x);
-  EXPECT_EQ(a.y, b.y);
-  EXPECT_EQ(a.radius, b.radius);
-  EXPECT_EQ(a.top, b.top);
-  EXPECT_EQ(a.confidence, b.confidence);
-  EXPECT_EQ(a.points, b.points);
-  EXPECT_EQ(a.covariance, b.covariance);
-}
-}  // namespace
+using tests::expectSame;
 
 TEST_F(SimulatedPoles, AreThoseOfSimulatingImportingAndExtracting) {
   configure("scans = 5\n");
@@ -174,8 +162,7 @@ TEST_F(SimulatedPoles, GiveATableOfSightingsWithoutTheirScans) {
   const auto sightings = [&](const std::string& rawlog) {
     return runProgram(evalMain, {"sightings", "--poles", at(rawlog), "--output", at("a.csv")});
   };
-  const Outcome seen = sightings("a.rawlog");
-  EXPECT_EQ(seen.code, 0) << seen.err;
+  const Outcome seen = succeeded(sightings("a.rawlog"));
   const io::CsvTable table(folder / "a.csv");
   const std::size_t points = table.column("points");
   std::size_t detections = 0, found = 0;
@@ -193,4 +180,5 @@ TEST_F(SimulatedPoles, GiveATableOfSightingsWithoutTheirScans) {
   expectFailure(sightings("b.rawlog"), {"b.rawlog", "scans"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_simulated_poles

@@ -6,10 +6,9 @@
 #include "core/common/BipartiteMatching.h"
 
 namespace polemcl::test_bipartite_matching {
+namespace {
 
 using Edges = std::vector<std::vector<std::uint32_t>>;
-
-namespace {
 
 /// Tries every choice for every left node; the right nodes taken so far are bits of `taken`.
 std::size_t brute(const Edges& edges, std::size_t left, std::uint32_t taken) {
@@ -21,8 +20,6 @@ std::size_t brute(const Edges& edges, std::size_t left, std::uint32_t taken) {
   }
   return best;
 }
-
-}  // namespace
 
 TEST(BipartiteMatching, EqualsTryingAllChoices) {
   std::mt19937_64 random(5);
@@ -65,4 +62,5 @@ TEST(BipartiteMatching, NothingToMatch) {
   EXPECT_EQ(maximumMatching({{}, {}}, 3), 0u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_bipartite_matching

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/common/DetectionFusion.h"
 #include "core/common/Transform.h"
 #include "support/Poles.h"

@@ -8,7 +8,6 @@
 #include "core/common/KdTree2D.h"
 
 namespace polemcl::test_kd_tree2_d {
-
 namespace {
 
 std::vector<Eigen::Vector2d> randomPoints(std::mt19937_64& random, std::size_t count,
@@ -57,8 +56,6 @@ void expectEqualsBruteForce(const std::vector<Eigen::Vector2d>& points, double x
   EXPECT_EQ(nearest.squaredDistance, best.squaredDistance);
 }
 
-}  // namespace
-
 TEST(KdTree2D, EqualsBruteForceOnRandomPoints) {
   std::mt19937_64 random(1);
   const auto points = randomPoints(random, 300, 20);
@@ -106,4 +103,5 @@ TEST(KdTree2D, RefusesPointsThatAreNotFinite) {
   EXPECT_THROW(KdTree2D({{0, std::numeric_limits<double>::infinity()}}), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_kd_tree2_d

@@ -6,7 +6,6 @@
 #include "core/common/PathSections.h"
 
 namespace polemcl::test_path_sections {
-
 namespace {
 
 PathSections split(const std::vector<Pose2D>& poses, double length) {
@@ -20,8 +19,6 @@ std::vector<Pose2D> straight(const std::vector<double>& ways) {
 }
 
 using Scans = std::vector<std::size_t>;
-
-}  // namespace
 
 TEST(PathSections, StraightPathByHand) {
   const auto result = split(straight({0, 0.4, 0.8, 1.0, 1.7, 2.2, 3.9}), 1);
@@ -116,8 +113,6 @@ TEST(PathSections, WhatIsNotUsedIsWayButNoScan) {
   EXPECT_EQ(result.occupied[1].scans, (Scans{5}));
 }
 
-namespace {
-
 /// The rule written down as lists over the whole way, one after the other.
 struct Lists {
   std::vector<std::size_t> middles, ends;
@@ -140,8 +135,6 @@ Scans middlesOf(const PathSections& sections) {
 PathSections pass(const std::vector<Pose2D>& poses, double length) {
   return passSections(poses, std::vector<std::uint32_t>(poses.size(), 0), length);
 }
-
-}  // namespace
 
 TEST(PathSections, PassedMiddlesByHand) {
   // 0.4 is nearer to 0.5, but 0.75 is the first past it; the end of section 1 is the first past 2.
@@ -186,4 +179,5 @@ TEST(PathSections, PassedDrivesCountForThemselvesAndUnusedMiddlesAreLeftOut) {
   EXPECT_TRUE(passSections({}, {}, 1).occupied.empty());
 }
 
+}  // namespace
 }  // namespace polemcl::test_path_sections

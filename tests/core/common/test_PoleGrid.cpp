@@ -8,7 +8,6 @@
 #include "core/common/PoleGrid.h"
 
 namespace polemcl::test_pole_grid {
-
 namespace {
 
 double uniform(std::mt19937_64& random, double low, double high) {
@@ -44,8 +43,6 @@ void compareOnRandomPoints(std::size_t count, double extent, double offset, doub
     }
   }
 }
-
-}  // namespace
 
 TEST(PoleGrid, EqualsTheTreeOnSparsePoles) {
   compareOnRandomPoints(500, 200, -100, 1);
@@ -138,4 +135,5 @@ TEST(PoleGrid, CandidatesOfARectangleThatIsTooWideOrNoneAreNotListed) {
   EXPECT_TRUE(candidates.empty());
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_grid

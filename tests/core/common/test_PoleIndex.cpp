@@ -8,10 +8,9 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_pole_index {
+namespace {
 
 using namespace polemcl::tests;
-
-namespace {
 
 std::vector<MapPole> randomPoles(std::mt19937_64& random, std::size_t count, double extent) {
   std::uniform_real_distribution<double> coordinate(-extent, extent);
@@ -33,8 +32,6 @@ std::vector<PoleIndex::Neighbour> brute(const std::vector<MapPole>& poles, doubl
                    [](const auto& a, const auto& b) { return a.distance < b.distance; });
   return found;
 }
-
-}  // namespace
 
 TEST(PoleIndex, EqualsBruteForceInsideAndBeyondThePreparedRadius) {
   std::mt19937_64 random(11);
@@ -128,4 +125,5 @@ TEST(PoleIndex, RefusesARadiusThatIsNotPositive) {
   EXPECT_THROW(PoleIndex({mapPoleAt(0, 0)}, std::nan("")), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_index

@@ -8,7 +8,6 @@
 #include "core/common/PoseEstimate.h"
 
 namespace polemcl::test_pose_estimate {
-
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -18,8 +17,6 @@ void expectPose(const Pose2D& pose, double x, double y, double yaw) {
   EXPECT_NEAR(pose.y, y, 1e-12);
   EXPECT_NEAR(wrapAngle(pose.yaw - yaw), 0, 1e-12);
 }
-
-}  // namespace
 
 TEST(PoseEstimate, WeightedMeanByHand) {
   // Weights 1 and 3.
@@ -144,4 +141,5 @@ TEST(PoseEstimate, RefusesBadInput) {
     EXPECT_THROW(bestShareMean({{}}, {0}, share), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pose_estimate

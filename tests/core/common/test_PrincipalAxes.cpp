@@ -6,7 +6,6 @@
 #include "core/common/PrincipalAxes.h"
 
 namespace polemcl::test_principal_axes {
-
 namespace {
 
 Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {
@@ -14,8 +13,6 @@ Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {
   m << xx, xy, yx, yy;
   return m;
 }
-
-}  // namespace
 
 TEST(PrincipalAxes, GiveTheMatrixBack) {
   for (double angle : {0.0, 0.3, 1.2, M_PI / 2, 2.5}) {
@@ -45,4 +42,5 @@ TEST(PrincipalAxes, RefuseWhatIsNoCovariance) {
   EXPECT_FALSE(principalAxes(matrix(std::numeric_limits<double>::infinity(), 0, 0, 1)));
 }
 
+}  // namespace
 }  // namespace polemcl::test_principal_axes

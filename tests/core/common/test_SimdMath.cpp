@@ -11,7 +11,6 @@
 #include "core/common/SimdMath.h"
 
 namespace polemcl::test_simd_math {
-
 namespace {
 
 /// Odd in number, so that vectors of any length leave a rest.
@@ -64,8 +63,6 @@ std::vector<double> everything() {
 struct AnyInstructionSet {
   ~AnyInstructionSet() { hwy::SetSupportedTargetsForTest(0); }
 };
-
-}  // namespace
 
 TEST(SimdMath, ExponentialsEqualTheStandardLibrarys) {
   std::vector<double> values = uniform(-708, 709);
@@ -133,4 +130,5 @@ TEST(SimdMath, InstructionSetsDifferInTheLastDigitsOnly) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_simd_math

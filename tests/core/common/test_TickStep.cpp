@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include <polemcl/core/common/Types.h>
 #include "core/common/TickStep.h"
 
 namespace polemcl::test_tick_step {

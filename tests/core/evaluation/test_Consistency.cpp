@@ -7,7 +7,6 @@
 #include "sim/common/Random.h"
 
 namespace polemcl::test_consistency {
-
 namespace {
 
 ConsistencySample sample(double dx, double dy, double dyaw, const Eigen::Matrix3d& covariance) {
@@ -17,8 +16,6 @@ ConsistencySample sample(double dx, double dy, double dyaw, const Eigen::Matrix3
   result.estimate.covariance = covariance;
   return result;
 }
-
-}  // namespace
 
 TEST(Consistency, FiguresByHand) {
   const Eigen::Matrix3d diagonal = Eigen::Vector3d(0.04, 0.01, 0.0025).asDiagonal();
@@ -80,4 +77,5 @@ TEST(Consistency, RefusesWhatHasNoNees) {
   EXPECT_THROW(scoreConsistency({sample(NAN, 0, 0, good)}), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_consistency

@@ -6,10 +6,9 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_detection_evaluation {
+namespace {
 
 using namespace polemcl::tests;
-
-namespace {
 
 PoleDetection detection(double x, double y, double confidence, double radius = 0.1) {
   PoleDetection d = detectionAt(x, y);
@@ -17,8 +16,6 @@ PoleDetection detection(double x, double y, double confidence, double radius = 0
   d.radius = radius;
   return d;
 }
-
-}  // namespace
 
 TEST(DetectionEvaluation, CountsRightDetectionsAndVisiblePoles) {
   DetectionEvaluation evaluation;
@@ -99,4 +96,5 @@ TEST(DetectionEvaluation, RefusesWhatMakesNoSense) {
   EXPECT_THROW(evaluation.add({flat}, {{1, 0, 0.1, true}}), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_detection_evaluation

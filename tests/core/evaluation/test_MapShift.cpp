@@ -1,5 +1,4 @@
-/// \file test_MapShift.cpp
-/// \brief The shift and the turn of a whole map are found.
+// The shift and the turn of a whole map are found.
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,6 @@
 
 namespace polemcl::test_motion_check {
 namespace {
-
 using tests::Dice;
 
 using Places = std::vector<Eigen::Vector2d>;
@@ -42,8 +41,6 @@ std::vector<SessionScan> drive(std::uint64_t seed) {
     poles.emplace_back(x, (dice.uniform() < 0.5 ? -1 : 1) * dice.uniform(4, 9));
   return driveAlong(poles, 0.5, 0.1, dice);
 }
-
-}  // namespace
 
 TEST(MotionCheck, AgreesWithTruePoses) {
   const MotionCheck check = checkMotion(drive(1));
@@ -151,4 +148,5 @@ TEST(MotionCheck, WhatOtherScansDoNotConfirmIsNoStep) {
   EXPECT_FALSE(check.contradicts());
 }
 
+}  // namespace
 }  // namespace polemcl::test_motion_check

@@ -5,9 +5,6 @@
 #include "core/evaluation/MultiScanLabels.h"
 
 namespace polemcl::test_multi_scan_labels {
-
-using namespace polemcl;
-
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
@@ -63,8 +60,6 @@ Standing judged(Scene scene, int scans = 12, float height = 0) {
   }
   return labels.judge().front();
 }
-
-}  // namespace
 
 TEST(MultiScanLabels, AFreePostIsAPole) {
   EXPECT_EQ(judged([](Points& p, const auto& at, int) { post(p, at, 10, 5, 0.1, 4); }),
@@ -135,4 +130,5 @@ TEST(MultiScanLabels, FewSidesFewScansAndLeaningThingsAreUnsure) {
   EXPECT_EQ(fromOneSide.judge().front(), Standing::unsure);
 }
 
+}  // namespace
 }  // namespace polemcl::test_multi_scan_labels

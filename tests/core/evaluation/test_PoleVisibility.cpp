@@ -3,7 +3,6 @@
 #include "core/evaluation/PoleVisibility.h"
 
 namespace polemcl::test_pole_visibility {
-
 namespace {
 
 struct Cloud {
@@ -24,8 +23,6 @@ struct Cloud {
 
 const Eigen::Isometry3d kHere = Eigen::Isometry3d::Identity();
 constexpr std::uint32_t kFoliage = 0x80000000u;
-
-}  // namespace
 
 TEST(PoleVisibility, SixReturnsOverSixtyCentimetresWithinFortyMetres) {
   Cloud cloud;
@@ -90,4 +87,5 @@ TEST(PoleVisibility, RefusesWhatDoesNotBelongTogether) {
   EXPECT_THROW(sightPoles(cloud.view(), cloud.labels, kHere, {{1, 0, 0}, {1, 2, 0}}), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_visibility

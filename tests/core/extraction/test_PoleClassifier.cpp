@@ -13,7 +13,6 @@
 
 namespace polemcl::test_pole_classifier {
 namespace {
-
 struct Row {
   std::string term;
   std::vector<double> values;
@@ -95,8 +94,6 @@ PoleFeatures randomFeatures(sim::Random& random) {
   return f;
 }
 
-}  // namespace
-
 TEST(PoleClassifier, OddsAreTheSumOfTheTrees) {
   const std::vector<Row> trees = readTable("trees.csv"), rough = readTable("rough_trees.csv");
   sim::Random random(3);
@@ -125,4 +122,5 @@ TEST(PoleClassifier, OddsNeverGrowWithClutter) {
   EXPECT_GT(fall, 100);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_classifier

@@ -11,10 +11,9 @@
 #include "support/KnownScene.h"
 
 namespace polemcl::test_pole_extractor {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 std::vector<PoleDetection> extract(const PointList& points, const SensorOptions& sensor,
                                    const ExtractionOptions& options = {},
@@ -41,8 +40,6 @@ void expectYard(const std::vector<PoleDetection>& poles, const Scene& scene = ya
     EXPECT_LT(variances[1], 0.1);
   }
 }
-
-}  // namespace
 
 TEST(PoleExtractor, FindsThePolesOfAKnownScene) {
   for (const auto& sensor :
@@ -292,8 +289,6 @@ TEST(PoleExtractor, RefusesBadOptions) {
   EXPECT_THROW(PoleExtractor(sensorOptions("no such sensor"), {}), Error);
 }
 
-namespace {
-
 /// What makes the yard's poles be refused, and with which reason.
 struct Spoiled {
   RejectionReason reason;
@@ -309,8 +304,6 @@ const std::vector<Spoiled> kSpoiled = {
     {RejectionReason::tooLow, [](ScanLineOptions& o) { o.minTop = 4; }},
     {RejectionReason::lowConfidence, [](ScanLineOptions& o) { o.minConfidence = 1; }},
     {RejectionReason::badFit, [](ScanLineOptions& o) { o.maxRadius = 0.03; }}};
-
-}  // namespace
 
 TEST_P(PoleExtractorRefusal, IsCounted) {
   const SensorOptions sensor = sensorOptions("os1_64");
@@ -346,4 +339,5 @@ TEST(PoleExtractorRefusal, OfPolesTooNearToEachOtherTheMostConfidentStays) {
   for (const PoleDetection& pole : all) EXPECT_LE(pole.confidence, kept[0].confidence);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_extractor

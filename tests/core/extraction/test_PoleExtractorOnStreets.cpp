@@ -1,5 +1,4 @@
-/// \file test_PoleExtractorOnStreets.cpp
-/// \brief How well poles are found on simulated streets and on a real drive.
+// How well poles are found on simulated streets and on a real drive.
 
 #include <gtest/gtest.h>
 
@@ -14,10 +13,9 @@
 #include "support/SimulatedScans.h"
 
 namespace polemcl::test_pole_extractor_on_streets {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 struct Lidar {
   std::string model;
@@ -72,8 +70,6 @@ std::vector<std::vector<Eigen::Vector2d>> mapEveryScan(const std::filesystem::pa
   }
   return poles;
 }
-
-}  // namespace
 
 TEST_P(PoleExtractorOnStreets, PrecisionAndRecall) {
   PoleExtractor extract = extractor();
@@ -159,4 +155,5 @@ TEST(PoleExtractorOnKitti, PolesAreSeenAgainInTheNextScans) {
   EXPECT_GE(share, 0.81);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_extractor_on_streets

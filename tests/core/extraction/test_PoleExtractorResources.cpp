@@ -1,5 +1,4 @@
-/// \file test_PoleExtractorResources.cpp
-/// \brief What the extractor may and may not depend on: the instruction set, and the heap.
+// What the extractor may and may not depend on: the instruction set, and the heap.
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -5,14 +5,12 @@
 
 #include <polemcl/core/extraction/PoleExtractor.h>
 #include "core/extraction/VisibilityRange.h"
-#include "core/sensor/PinholeCamera.h"
 #include "support/KnownScene.h"
 
 namespace polemcl::test_visibility_range {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 constexpr double kTurn = 2 * M_PI;
 
@@ -39,8 +37,6 @@ std::vector<float> visibilityRangeOf(const PointList& points, const SensorOption
 float at(const std::vector<float>& ranges, double bearing) {
   return ranges[visibilityRangeSector(bearing, ranges.size())];
 }
-
-}  // namespace
 
 TEST(VisibilityRange, SectorsCountFromBehindToTheLeft) {
   EXPECT_EQ(visibilityRangeSector(-M_PI, 256), 0u);
@@ -179,4 +175,5 @@ TEST(VisibilityRange, IsEmptyByThePapersMethodAndOfCameras) {
   EXPECT_TRUE(ranges.empty());
 }
 
+}  // namespace
 }  // namespace polemcl::test_visibility_range

@@ -2,21 +2,18 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <string>
 
 #include "core/global_localization/GlobalLocalizer.h"
 #include "support/PoleCity.h"
 #include "support/Refusal.h"
 
 namespace polemcl::test_global_localizer {
+namespace {
 
-using namespace polemcl;
 using tests::CityOptions;
 using tests::DriveOptions;
 using tests::Frame;
 using tests::PoleCity;
-
-namespace {
 
 CityOptions city(std::uint64_t seed) {
   CityOptions options;
@@ -105,8 +102,6 @@ void record(const Count& count) {
   testing::Test::RecordProperty("wrong", count.wrong);
   testing::Test::RecordProperty("undecided", count.undecided);
 }
-
-}  // namespace
 
 /// Worlds that no setting was chosen on: 1001 to 1004.
 TEST(GlobalLocalizer, FindsTheRobotFromAnywhere) {
@@ -437,4 +432,5 @@ TEST(GlobalLocalizer, RefusesAPoleThatIsNowhere) {
   EXPECT_REFUSED(GlobalLocalizer(map), "pole 2");
 }
 
+}  // namespace
 }  // namespace polemcl::test_global_localizer

@@ -1,6 +1,5 @@
-/// \file test_GlobalLocalizerCovariance.cpp
-/// \brief Are the poses found without a start as uncertain as their covariances say, and poles as
-/// far off as is tolerated?
+// Are the poses found without a start as uncertain as their covariances say, and poles as
+// far off as is tolerated?
 
 #include <gtest/gtest.h>
 
@@ -13,13 +12,12 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_global_localizer_covariance {
+namespace {
 
 using tests::CityOptions;
 using tests::DriveOptions;
 using tests::Frame;
 using tests::PoleCity;
-
-namespace {
 
 /// Mean squared errors of resolved places, in units of their covariances.
 struct Consistency {
@@ -98,8 +96,6 @@ struct SeenOnce {
   PreparedMap map;
   Constellation query;
 };
-
-}  // namespace
 
 // Where all is as the options say: exact odometry, and map poles off by their covariance and sigma.
 TEST(GlobalLocalizerCovariance, ItsCovarianceIsWhatItsErrorsAre) {
@@ -190,4 +186,5 @@ TEST(GlobalLocalizerCovariance, ResidualsWidenItByTheirDegreesOfFreedom) {
   EXPECT_NEAR(varianceAlongX(0.24), 0.01 / 6 * (6 * 2.4 * 2.4 / 9), 1e-5);
 }
 
+}  // namespace
 }  // namespace polemcl::test_global_localizer_covariance

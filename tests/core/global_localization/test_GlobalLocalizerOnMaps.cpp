@@ -1,12 +1,10 @@
-/// \file test_GlobalLocalizerOnMaps.cpp
-/// \brief Global localization where poles and roads are real: a published map of a campus against
-/// poles labelled by hand, and the roads of a city drive.
+// Global localization where poles and roads are real: a published map of a campus against
+// poles labelled by hand, and the roads of a city drive.
 
 #include <gtest/gtest.h>
 #include <zlib.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -16,17 +14,13 @@
 #include "io/file/Npz.h"
 #include "io/map/PoleTables.h"
 #include "support/PoleCity.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::test_global_localizer_on_maps {
-
-using tests::Way;
-
 namespace {
 
-std::filesystem::path dataFolder() {
-  const char* folder = std::getenv("POLEMCL_DATA");
-  return folder ? folder : "";
-}
+using testing_apps::dataFolder;
+using tests::Way;
 
 /// x and y of a gzipped KITTI trajectory, points half a metre or more apart.
 Way readRoad(const std::filesystem::path& file) {
@@ -147,8 +141,6 @@ Count starts(const std::vector<MapPole>& map, const tests::Surroundings& things,
   return result;
 }
 
-}  // namespace
-
 /// Half of this map's poles are labelled. Two thirds of the labelled poles are on the map, 0.16 m
 /// off in the median. Unlabelled things are taken for a pole again in half of the cases.
 TEST(GlobalLocalizerOnMaps, FindsTheRobotInAPublishedMap) {
@@ -225,4 +217,5 @@ TEST(GlobalLocalizerOnMaps, FindsTheRobotAmongThePolesOfRealCities) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_global_localizer_on_maps

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
@@ -10,7 +9,6 @@
 #include "sim/common/Random.h"
 
 namespace polemcl::test_pair_distance_index {
-
 namespace {
 
 std::vector<Eigen::Vector2d> scatter(std::uint64_t seed, int count, double extent) {
@@ -29,8 +27,6 @@ Names namesOf(PairDistanceIndex::Range range) {
     names.insert({p->first, p->second});
   return names;
 }
-
-}  // namespace
 
 TEST(PairDistanceIndex, HoldsEveryPairWithinTheBoundsOnce) {
   const std::vector<Eigen::Vector2d> poles = scatter(1, 200, 200);
@@ -78,4 +74,5 @@ TEST(PairDistanceIndex, KeepsAShareOfEveryDistanceInACrowd) {
     EXPECT_GT(pairs.between(low, low + 4).size(), 500u) << low;
 }
 
+}  // namespace
 }  // namespace polemcl::test_pair_distance_index

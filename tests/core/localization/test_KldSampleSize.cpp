@@ -1,13 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numeric>
 
-#include "core/common/Binder.h"
 #include "core/localization/KldSampleSize.h"
 
 namespace polemcl::test_kld_sample_size {
-
 namespace {
 
 KldOptions wide() {
@@ -16,8 +13,6 @@ KldOptions wide() {
   options.maxParticles = 1000000;
   return options;
 }
-
-}  // namespace
 
 TEST(KldSampleSize, IsTheQuantileOfChiSquareOverTwiceEpsilon) {
   struct Row {
@@ -64,4 +59,5 @@ TEST(KldSampleSize, CountsTheBinsOfTheChosen) {
   EXPECT_EQ(occupiedBins(poses, {}, options), 0u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_kld_sample_size

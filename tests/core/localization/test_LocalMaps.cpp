@@ -1,16 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/common/Binder.h"
 #include "core/localization/LocalMaps.h"
 #include "support/Poles.h"
 
 namespace polemcl::test_local_maps {
+namespace {
 
 using namespace polemcl::tests;
-
-namespace {
 
 /// A drive with 0.25 m to the left turn of 0.1 rad a scan.
 const Pose2D kStep{0.25, 0, 0.1};
@@ -34,8 +31,6 @@ LocalMapOptions options(int maps, int minHits) {
   result.minHits = minHits;
   return result;
 }
-
-}  // namespace
 
 TEST(LocalMaps, GivesOutTheMiddleScansPolesWhenTheSectionEnds) {
   LocalMaps maps(options(1, 1));
@@ -122,4 +117,5 @@ TEST(LocalMaps, FastVehiclesGiveOneSectionAScan) {
     EXPECT_EQ(maps.add({10, 0, 0}, {detectionAt(5, 0)}).size(), scan > 0 ? 1u : 0u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_local_maps

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <optional>
-#include <string>
 
 #include "core/localization/LocalSubmap.h"
 #include "support/PoleCity.h"
@@ -11,9 +10,6 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_local_submap {
-
-using namespace polemcl;
-
 namespace {
 
 PoleDetection seen(double x, double y, double variance = 0.01) {
@@ -36,8 +32,6 @@ SubmapOptions patient() {
 }
 
 const double kNan = std::nan("");
-
-}  // namespace
 
 TEST(LocalSubmap, AveragesByInformation) {
   LocalSubmap submap(exact());
@@ -237,8 +231,6 @@ TEST(LocalSubmap, ClearStartsAnew) {
   EXPECT_EQ(submap.poles()[0].centre.x(), 10);
 }
 
-namespace {
-
 /// Against the truth of 80 simulated drives.
 struct Consistency {
   double squared = 0;  ///< mean squared error in units of the covariance: 2 if that is exact
@@ -279,8 +271,6 @@ Consistency consistencyOf(const tests::DriveOptions& driving, const SubmapOption
   result.squared /= static_cast<double>(result.poles - result.strays);
   return result;
 }
-
-}  // namespace
 
 TEST(LocalSubmap, PolesAreAsCertainAsItSays) {
   tests::DriveOptions exact;
@@ -408,4 +398,5 @@ TEST(LocalSubmap, TakesOnlyWhatIsSeenNow) {
   EXPECT_EQ(submap.take(2, 0).size(), 1u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_local_submap

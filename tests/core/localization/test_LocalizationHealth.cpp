@@ -5,18 +5,61 @@
 #include <tuple>
 #include <vector>
 
-#include "support/HealthFeed.h"
+#include "core/localization/LocalizationHealth.h"
 
 namespace polemcl::test_localization_health {
-
-using tests::Feed;
-
 namespace {
 
 using State = HealthState;
 using Reason = HealthReason;
 
-}  // namespace
+/// Feeds a monitor with scans of ten poles, half a metre and a tenth of a second apart.
+class Feed {
+ public:
+  /// \param count, share Of the first scans.
+  explicit Feed(int count = 0, double share = 1) {
+    monitor.begin();
+    scans(count, share);
+  }
+
+  /// \param share Share of the poles that match. \param poles Number of poles in the scan.
+  Feed& scan(double share, int poles = 10) {
+    HealthInput input;
+    input.time = time += period;
+    input.metres = metres;
+    for (int i = 0; i < poles; ++i) {
+      PoleMatch match;
+      match.confidence = confidence;
+      match.matched = i < std::lround(share * poles);
+      match.squared = match.matched ? squared : 0;
+      input.matches.push_back(match);
+    }
+    input.estimate.covariance = Eigen::Vector3d(sigma * sigma, 1e-4, yaw * yaw).asDiagonal();
+    input.effectiveParticles = 500;
+    input.modeShare = modeShare;
+    input.odometryContradicted = contradicted;
+    input.rival = rival;
+    input.near = near;
+    last = monitor.update(input);
+    return *this;
+  }
+  Feed& scans(int count, double share, int poles = 10) {
+    for (int i = 0; i < count; ++i) scan(share, poles);
+    return *this;
+  }
+  void expect(HealthState state, HealthReason reason) const {
+    EXPECT_STREQ(name(last.state), name(state));
+    EXPECT_STREQ(name(last.reason), name(reason));
+  }
+
+  HealthMonitor monitor;
+  Health last;
+  double time = 1e9, period = 0.1, metres = 0.5, squared = 2, sigma = 0.02, yaw = 0.001,
+         modeShare = 1, confidence = 1;
+  bool contradicted = false;
+  RivalPose rival;
+  NearPoles near;
+};
 
 TEST(LocalizationHealth, SearchingUntilAPoseIsAssumed) {
   HealthMonitor monitor;
@@ -28,10 +71,8 @@ TEST(LocalizationHealth, SearchingUntilAPoseIsAssumed) {
 
 TEST(LocalizationHealth, OkOnceMatchesOverSomeMetresBearThePoseOut) {
   Feed feed;
-  feed.scans(5, 0.9);
-  feed.expect(State::degraded, Reason::converging);
-  feed.scans(6, 0.9);  // 5.5 m
-  feed.expect(State::ok, Reason::none);
+  feed.scans(5, 0.9).expect(State::degraded, Reason::converging);
+  feed.scans(6, 0.9).expect(State::ok, Reason::none);  // 5.5 m
   EXPECT_NEAR(feed.last.matchedShare, 0.9, 1e-12);
   EXPECT_NEAR(feed.last.innovation, 1, 1e-12);  // m² of 2 over 2 degrees of freedom
 }
@@ -39,17 +80,15 @@ TEST(LocalizationHealth, OkOnceMatchesOverSomeMetresBearThePoseOut) {
 TEST(LocalizationHealth, APoseThatASearchFoundIsBorneOutSooner) {
   Feed feed;
   feed.monitor.begin(PoseSource::found);
-  feed.scans(3, 0.9);
-  feed.expect(State::degraded, Reason::converging);
-  feed.scan(0.9);  // 2 m
-  feed.expect(State::ok, Reason::none);
+  feed.scans(3, 0.9).expect(State::degraded, Reason::converging);
+  feed.scan(0.9).expect(State::ok, Reason::none);  // 2 m
 }
 
 TEST(LocalizationHealth, APoseFoundNearABelievedOneTakesLonger) {
   const auto scansUntilOk = [](Feed& feed, double share) {
     feed.monitor.begin(PoseSource::foundNear);
     int scans = 1;
-    while (feed.scan(share).state != State::ok && scans < 40) ++scans;
+    while (feed.scan(share).last.state != State::ok && scans < 40) ++scans;
     return scans;
   };
   Feed feed;
@@ -66,32 +105,27 @@ TEST(LocalizationHealth, WhatIsSeenIsComparedWithTheMeanOfALongWay) {
   Feed feed;
   feed.scans(100, 1, 10);
   EXPECT_NEAR(feed.last.seenShare, 1, 1e-9);
-  EXPECT_NEAR(feed.scans(20, 1, 4).seenShare, 4.0 / 9, 0.02);
+  EXPECT_NEAR(feed.scans(20, 1, 4).last.seenShare, 4.0 / 9, 0.02);
 
   Feed doubtful;  // six of ten match
   doubtful.scans(100, 0.6, 10);
-  EXPECT_NEAR(doubtful.scans(20, 0.6, 5).seenShare, 5.0 / 9, 0.04);
+  EXPECT_NEAR(doubtful.scans(20, 0.6, 5).last.seenShare, 5.0 / 9, 0.04);
 
   Feed sparse;  // less than a pole a scan
   sparse.confidence = 0.8;
   sparse.scans(100, 1, 1);
   sparse.confidence = 0.2;
-  EXPECT_NEAR(sparse.scans(20, 1, 1).seenShare, 0.2 / 0.7, 0.03);
+  EXPECT_NEAR(sparse.scans(20, 1, 1).last.seenShare, 0.2 / 0.7, 0.03);
 }
 
 TEST(LocalizationHealth, TooFewMatchesDegradeThenLose) {
   Feed feed;
-  feed.scans(40, 0.9);
-  feed.expect(State::ok, Reason::none);
-  feed.scans(40, 0.3);
-  feed.expect(State::degraded, Reason::mismatch);
-  feed.scans(40, 0.1);
-  feed.expect(State::degraded, Reason::mismatch);
+  feed.scans(40, 0.9).expect(State::ok, Reason::none);
+  feed.scans(40, 0.3).expect(State::degraded, Reason::mismatch);
+  feed.scans(40, 0.1).expect(State::degraded, Reason::mismatch);
   EXPECT_NEAR(feed.last.matchedShare, 0.1, 1e-12);
-  feed.scans(40, 0);
-  feed.expect(State::lost, Reason::mismatch);
-  feed.scans(40, 0.9);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(40, 0).expect(State::lost, Reason::mismatch);
+  feed.scans(40, 0.9).expect(State::ok, Reason::none);
 }
 
 // Key frames 3.6 m apart, as on the real kilometre. Three poles are too few for a window.
@@ -99,88 +133,66 @@ TEST(LocalizationHealth, FewPolesRaiseDoubtWhereNoneMatches) {
   Feed feed;
   feed.metres = 3.6;
   feed.scans(10, 0.9);
-  feed.scan(0, 3);
-  feed.expect(State::ok, Reason::none);
-  feed.scan(0, 3);
-  feed.expect(State::degraded, Reason::mismatch);
-  feed.scans(4, 1, 3);
-  feed.expect(State::ok, Reason::none);
+  feed.scan(0, 3).expect(State::ok, Reason::none);
+  feed.scan(0, 3).expect(State::degraded, Reason::mismatch);
+  feed.scans(4, 1, 3).expect(State::ok, Reason::none);
   feed.metres = 0.002;  // scans from one place show the same poles again
-  feed.scans(20, 0, 3);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(20, 0, 3).expect(State::ok, Reason::none);
 }
 
 TEST(LocalizationHealth, DoubtIsForgottenAlikeHoweverLongItLasted) {
   for (const int scansOfDoubt : {250, 600}) {
-    Feed feed;
-    feed.scans(20, 1);
+    Feed feed(20, 1);
     feed.confidence = 0.2;  // too little for the shares of windows
-    feed.scans(scansOfDoubt, 0, 1);
-    feed.expect(State::degraded, Reason::mismatch);
-    feed.scans(45, 1, 1);
-    feed.expect(State::degraded, Reason::mismatch);
-    feed.scans(35, 1, 1);
-    feed.expect(State::ok, Reason::none);
+    feed.scans(scansOfDoubt, 0, 1).expect(State::degraded, Reason::mismatch);
+    feed.scans(45, 1, 1).expect(State::degraded, Reason::mismatch);
+    feed.scans(35, 1, 1).expect(State::ok, Reason::none);
   }
 }
 
 TEST(LocalizationHealth, LostWithinTheWindowOfMetresAfterAJump) {
-  Feed feed;
-  feed.scans(60, 0.9);
+  Feed feed(60, 0.9);
   double driven = 0;
-  while (feed.scan(0).state != State::lost && driven < 100) driven += feed.metres;
+  while (feed.scan(0).last.state != State::lost && driven < 100) driven += feed.metres;
   EXPECT_LE(driven, 18);
 }
 
 TEST(LocalizationHealth, ChanceMatchesDoNotEndLost) {
-  Feed feed;
-  feed.scans(60, 0.8);
-  feed.scans(60, 0);
-  feed.expect(State::lost, Reason::mismatch);
-  feed.scans(60, 0.1);
-  feed.expect(State::lost, Reason::mismatch);
-  feed.scans(60, 0.2);
-  feed.expect(State::degraded, Reason::mismatch);
+  Feed feed(60, 0.8);
+  feed.scans(60, 0).expect(State::lost, Reason::mismatch);
+  feed.scans(60, 0.1).expect(State::lost, Reason::mismatch);
+  feed.scans(60, 0.2).expect(State::degraded, Reason::mismatch);
   Feed poor;  // never lost before
   poor.scans(60, 0.8);
-  poor.scans(60, 0.1);
-  poor.expect(State::degraded, Reason::mismatch);
+  poor.scans(60, 0.1).expect(State::degraded, Reason::mismatch);
 }
 
 TEST(LocalizationHealth, ALostPoseIsConfirmedAnew) {
   Feed feed;
   feed.metres = 8;  // scans far apart: one with four chance matches is no reason for `ok`
-  feed.scans(10, 0.9);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(10, 0.9).expect(State::ok, Reason::none);
   feed.sigma = 6;
-  feed.scan(0, 0);
-  feed.expect(State::lost, Reason::spread);
+  feed.scan(0, 0).expect(State::lost, Reason::spread);
   feed.sigma = 0.1;
-  feed.scan(1);
-  feed.expect(State::degraded, Reason::converging);
-  feed.scan(1);
-  feed.expect(State::ok, Reason::none);
+  feed.scan(1).expect(State::degraded, Reason::converging);
+  feed.scan(1).expect(State::ok, Reason::none);
 }
 
 /// Three of them are judged together, though the window of 8 m has room for one.
 TEST(LocalizationHealth, ScansFarApartWithFewPolesAreJudged) {
   Feed feed;
   feed.metres = 10;
-  feed.scans(2, 1, 3);
-  feed.expect(State::degraded, Reason::converging);
-  feed.scans(2, 1, 3);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(2, 1, 3).expect(State::degraded, Reason::converging);
+  feed.scans(2, 1, 3).expect(State::ok, Reason::none);
   feed.scans(2, 0, 3);
   EXPECT_NE(feed.last.state, State::ok);
   Feed far;  // too far apart
   far.metres = 20;
-  far.scans(10, 1, 3);
-  far.expect(State::degraded, Reason::converging);
+  far.scans(10, 1, 3).expect(State::degraded, Reason::converging);
 }
 
 TEST(LocalizationHealth, AShortStretchWithoutMappedPolesDegradesOnly) {
-  Feed feed;
-  feed.scans(60, 0.9);
+  Feed feed(60, 0.9);
   for (int i = 0; i < 20; ++i) {  // 10 m, longer than the window of 8 m
     feed.scan(0);
     EXPECT_NE(feed.last.state, State::lost) << i;
@@ -192,10 +204,8 @@ TEST(LocalizationHealth, AFewNewPolesWhereTheMappedAreGoneDegradeOnly) {
   Feed few, more;
   few.scans(60, 0.9);
   more.scans(60, 0.9);
-  few.scans(80, 0, 1);  // 37 scans in 18 m
-  few.expect(State::degraded, Reason::mismatch);
-  more.scans(80, 0, 2);
-  more.expect(State::lost, Reason::mismatch);
+  few.scans(80, 0, 1).expect(State::degraded, Reason::mismatch);  // 37 scans in 18 m
+  more.scans(80, 0, 2).expect(State::lost, Reason::mismatch);
 }
 
 TEST(LocalizationHealth, ANewPoseThatIsNeverBorneOutIsLost) {
@@ -203,28 +213,21 @@ TEST(LocalizationHealth, ANewPoseThatIsNeverBorneOutIsLost) {
   // Above lost_share, so only the lack of a confirmation tells.
   for (int i = 1; i < 30; ++i) feed.scan(0.3);
   feed.expect(State::degraded, Reason::converging);
-  feed.scan(0.3);  // 15 m
-  feed.expect(State::lost, Reason::mismatch);
+  feed.scan(0.3).expect(State::lost, Reason::mismatch);  // 15 m
 }
 
 TEST(LocalizationHealth, ANewPoseIsHeldToAGreaterShareThanOneThatHasBeenOk) {
   Feed feed;
-  feed.scans(29, 0.45, 20);
-  feed.expect(State::degraded, Reason::converging);
-  feed.scan(0.45, 20);  // 15 m
-  feed.expect(State::lost, Reason::mismatch);
-  feed.scans(60, 0.9);
-  feed.expect(State::ok, Reason::none);
-  feed.scans(60, 0.45, 20);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(29, 0.45, 20).expect(State::degraded, Reason::converging);
+  feed.scan(0.45, 20).expect(State::lost, Reason::mismatch);  // 15 m
+  feed.scans(60, 0.9).expect(State::ok, Reason::none);
+  feed.scans(60, 0.45, 20).expect(State::ok, Reason::none);
 }
 
 TEST(LocalizationHealth, ANewPoseThatHardlyAnythingSpeaksForIsLostAtOnce) {
   Feed feed;
-  feed.scans(3, 0.1);
-  feed.expect(State::degraded, Reason::converging);
-  feed.scan(0.1);  // 2 m
-  feed.expect(State::lost, Reason::mismatch);
+  feed.scans(3, 0.1).expect(State::degraded, Reason::converging);
+  feed.scan(0.1).expect(State::lost, Reason::mismatch);  // 2 m
 }
 
 /// A LiDAR that sees 3 poles a scan, 10, or 28.
@@ -256,173 +259,132 @@ TEST(LocalizationHealth, ManyAndFewPolesAScanAreJudgedAlike) {
 TEST(LocalizationHealth, OneUnknownPoleDoesNotLoseANewPose) {
   Feed feed;
   feed.confidence = 0.8;
-  feed.scans(9, 0, 1);  // 4.5 m, 7.2 sightings
-  feed.expect(State::degraded, Reason::converging);
+  feed.scans(9, 0, 1).expect(State::degraded, Reason::converging);  // 4.5 m, 7.2 sightings
 }
 
 TEST(LocalizationHealth, ManyPolesOfWhichNoneMatchesAreNeverOk) {
   Feed feed;
   feed.scans(60, 1, 28);
   feed.confidence = 0.07;  // two poles a scan
-  feed.scans(100, 0, 28);
-  feed.expect(State::degraded, Reason::mismatch);
+  feed.scans(100, 0, 28).expect(State::degraded, Reason::mismatch);
 }
 
 TEST(LocalizationHealth, WhatIsUsualOutlivesBlindStretchesAndSearches) {
-  Feed feed;
-  feed.scans(60, 1);
+  Feed feed(60, 1);
   feed.scans(800, 0, 0);  // 400 m
   feed.confidence = 0.1;
-  feed.scans(60, 0);
-  feed.expect(State::degraded, Reason::mismatch);
+  feed.scans(60, 0).expect(State::degraded, Reason::mismatch);
   feed.monitor.begin();
-  feed.scans(29, 0);
-  feed.expect(State::degraded, Reason::converging);
+  feed.scans(29, 0).expect(State::degraded, Reason::converging);
 }
 
 TEST(LocalizationHealth, FewPolesSayNothingAgainstThePose) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.scans(17, 0, 0);  // the window of 8 m is empty
-  feed.scan(0, 1);
-  feed.expect(State::ok, Reason::none);
+  feed.scan(0, 1).expect(State::ok, Reason::none);
 }
 
 TEST(LocalizationHealth, ScansFromOneViewpointCountAsOne) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.metres = 0;
   feed.scan(0.0);
   EXPECT_NEAR(feed.last.innovation, 1, 1e-12);  // means of m² and of matches alike
-  feed.scans(2999, 0.0);                        // five minutes beside something odd: not lost
-  feed.expect(State::degraded, Reason::mismatch);
+  feed.scans(2999, 0.0).expect(State::degraded,
+                               Reason::mismatch);  // five minutes beside something odd: not lost
   EXPECT_NEAR(feed.last.matchedShare, 0.9 * (16 + 1.0 / 3001) / 17, 1e-9);  // 17 viewpoints in 8 m
   feed.metres = 0.5;
-  feed.scans(37, 0.0);  // driving on, it is
-  feed.expect(State::lost, Reason::mismatch);
+  feed.scans(37, 0.0).expect(State::lost, Reason::mismatch);  // driving on, it is
 }
 
 TEST(LocalizationHealth, SpreadDegradesThenLoses) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.sigma = 0.8;
-  feed.scan(0.9);
-  feed.expect(State::degraded, Reason::spread);
+  feed.scan(0.9).expect(State::degraded, Reason::spread);
   EXPECT_NEAR(feed.last.spread, 0.8, 1e-12);
   feed.sigma = 6;
-  feed.scan(0.9);
-  feed.expect(State::lost, Reason::spread);
+  feed.scan(0.9).expect(State::lost, Reason::spread);
   feed.sigma = 0.02;
   feed.yaw = 0.1;
-  feed.scan(0.9);
-  feed.expect(State::degraded, Reason::spread);
+  feed.scan(0.9).expect(State::degraded, Reason::spread);
 }
 
 TEST(LocalizationHealth, SeveralPlacesAreAmbiguousNotLost) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.modeShare = 0.6;
   feed.sigma = 60;
-  feed.scan(0.9);
-  feed.expect(State::degraded, Reason::ambiguous);
+  feed.scan(0.9).expect(State::degraded, Reason::ambiguous);
 }
 
 TEST(LocalizationHealth, BlindByTimeOrByMetres) {
-  Feed standing;
-  standing.scans(40, 0.9);
+  Feed standing(40, 0.9);
   standing.metres = 0;
-  standing.scans(19, 0, 0);
-  standing.expect(State::ok, Reason::none);
-  standing.scans(3, 0, 0);  // 2.2 s
-  standing.expect(State::degraded, Reason::noPoles);
-  Feed fast;
-  fast.scans(40, 0.9);
+  standing.scans(19, 0, 0).expect(State::ok, Reason::none);
+  standing.scans(3, 0, 0).expect(State::degraded, Reason::noPoles);  // 2.2 s
+  Feed fast(40, 0.9);
   fast.metres = 3;
-  fast.scans(7, 0, 0);  // 0.7 s, 21 m
-  fast.expect(State::degraded, Reason::noPoles);
+  fast.scans(7, 0, 0).expect(State::degraded, Reason::noPoles);  // 0.7 s, 21 m
   fast.metres = 0.5;
-  fast.scans(10, 0.9);
-  fast.expect(State::ok, Reason::none);
+  fast.scans(10, 0.9).expect(State::ok, Reason::none);
 }
 
 TEST(LocalizationHealth, PolesWithoutConfidenceAreNotSeen) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.confidence = 0;
-  feed.scans(25, 1);
-  feed.expect(State::degraded, Reason::noPoles);
+  feed.scans(25, 1).expect(State::degraded, Reason::noPoles);
 }
 
 TEST(LocalizationHealth, FewMatchesBearNoPoseOut) {
   Feed feed;
   feed.confidence = 0.04;  // in 8 m 17 viewpoints of 10 poles: 6.8 sightings
-  feed.scans(100, 0.9);
-  feed.expect(State::degraded, Reason::converging);
+  feed.scans(100, 0.9).expect(State::degraded, Reason::converging);
 }
 
 TEST(LocalizationHealth, ATimeGapIsNamedUntilMatchesOverMetres) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.time += 120;
-  feed.scan(0.9);
-  feed.expect(State::degraded, Reason::timeGap);
-  feed.scans(11, 0.9);
-  feed.expect(State::ok, Reason::none);
+  feed.scan(0.9).expect(State::degraded, Reason::timeGap);
+  feed.scans(11, 0.9).expect(State::ok, Reason::none);
   feed.time += 120;
-  feed.scans(13, 0, 1);  // 6 m, and nothing matches
-  feed.expect(State::degraded, Reason::timeGap);
-  feed.scans(11, 0.9);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(13, 0, 1).expect(State::degraded, Reason::timeGap);  // 6 m, and nothing matches
+  feed.scans(11, 0.9).expect(State::ok, Reason::none);
 }
 
 TEST(LocalizationHealth, OdometryAndInnovationDegrade) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.contradicted = true;
-  feed.scan(0.9);
-  feed.expect(State::degraded, Reason::odometry);
+  feed.scan(0.9).expect(State::degraded, Reason::odometry);
   feed.contradicted = false;
   feed.squared = 10;
-  feed.scans(40, 0.9);
-  feed.expect(State::degraded, Reason::innovation);
+  feed.scans(40, 0.9).expect(State::degraded, Reason::innovation);
   EXPECT_NEAR(feed.last.innovation, 5, 1e-12);
 }
 
 TEST(LocalizationHealth, PolesThatFitAnotherPoseTogetherDegrade) {
   Feed feed;
-  feed.scans(20, 0.6);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(20, 0.6).expect(State::ok, Reason::none);
   feed.rival = {{0.4, 0, 0}, {1, 2, 3, 4, 5}};  // (5 - 2) 0.5 m / 3 m
-  feed.scans(2, 0.6);
-  feed.expect(State::ok, Reason::none);
-  feed.scan(0.6);
-  feed.expect(State::degraded, Reason::innovation);
+  feed.scans(2, 0.6).expect(State::ok, Reason::none);
+  feed.scan(0.6).expect(State::degraded, Reason::innovation);
   feed.rival = {};
-  feed.scans(20, 1, 2);  // 10 m with a few poles
-  feed.expect(State::degraded, Reason::innovation);
+  feed.scans(20, 1, 2).expect(State::degraded, Reason::innovation);  // 10 m with a few poles
 }
 
 TEST(LocalizationHealth, PolesThatFitAnotherPoseAreForgottenOverMetres) {
-  Feed feed;
-  feed.scans(20, 0.6);
+  Feed feed(20, 0.6);
   feed.rival = {{0.4, 0, 0}, {1, 2, 3, 4, 5}};
   feed.scans(20, 0.6);  // up to 2, which is the most
   feed.rival = {};
-  feed.scans(23, 0.6);  // above 1 for 12 m
-  feed.expect(State::degraded, Reason::innovation);
-  feed.scans(2, 0.6);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(23, 0.6).expect(State::degraded, Reason::innovation);  // above 1 for 12 m
+  feed.scans(2, 0.6).expect(State::ok, Reason::none);
   feed.rival = {{0.4, 0, 0}, {1, 2, 3, 4, 5}};
   feed.scans(20, 0.6);
   feed.rival = {};
   feed.metres = 8;  // the same for scans far apart
-  feed.scans(2, 0.6);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(2, 0.6).expect(State::ok, Reason::none);
 }
 
 TEST(LocalizationHealth, TwoPolesThatFitAnotherPoseSayNothingHoweverOftenTheyAreSeen) {
-  Feed feed;
-  feed.scans(20, 0.6);
+  Feed feed(20, 0.6);
   feed.rival = {{0.4, 0, 0}, {1, 2}};
   for (int i = 0; i < 60; ++i) {
     feed.scan(0.6);
@@ -433,8 +395,7 @@ TEST(LocalizationHealth, TwoPolesThatFitAnotherPoseSayNothingHoweverOftenTheyAre
 TEST(LocalizationHealth, PolesThatFitTheSameOtherPoseAddUp) {
   for (const auto& [x, yaw, state] :
        {std::tuple{0.5, 0.01, State::degraded}, {0.7, 0.0, State::ok}, {0.4, 0.03, State::ok}}) {
-    Feed feed;
-    feed.scans(20, 0.6);
+    Feed feed(20, 0.6);
     feed.rival = {{0.4, 0, 0}, {1, 2}};
     feed.scans(2, 0.6);
     for (std::size_t i = 0; i < 4; ++i) {  // 1, 2, 3, 4 beyond two: 10 * 0.5 m / 3 m
@@ -446,8 +407,7 @@ TEST(LocalizationHealth, PolesThatFitTheSameOtherPoseAddUp) {
 }
 
 TEST(LocalizationHealth, PolesThatFittedAnotherPoseLongAgoDoNotAddUp) {
-  Feed feed;
-  feed.scans(20, 0.6);
+  Feed feed(20, 0.6);
   for (std::size_t i = 0; i < 20; ++i) {
     feed.rival = {{0.4, 0, 0}, {2 * i, 2 * i + 1}};
     feed.scan(0.6);
@@ -460,31 +420,68 @@ TEST(LocalizationHealth, PolesThatFittedAnotherPoseLongAgoDoNotAddUp) {
 TEST(LocalizationHealth, ANewPoseIsNotHeldByWhatWasBeforeItWasKnown) {
   Feed feed;
   feed.rival = {{0.4, 0, 0}, {1, 2, 3, 4, 5}};
-  feed.scans(9, 0.9);
-  feed.expect(State::degraded, Reason::converging);
+  feed.scans(9, 0.9).expect(State::degraded, Reason::converging);
   feed.rival = {};
-  feed.scans(3, 0.9);
-  feed.expect(State::ok, Reason::none);
+  feed.scans(3, 0.9).expect(State::ok, Reason::none);
 }
 
 TEST(LocalizationHealth, ElsewhereIsLostAndANewPoseMustProveItself) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.monitor.reportElsewhere();
   EXPECT_EQ(feed.monitor.health().state, State::lost);
   EXPECT_EQ(feed.monitor.health().reason, Reason::elsewhere);
   feed.monitor.begin();
-  feed.scan(0.9);
-  feed.expect(State::degraded, Reason::converging);
+  feed.scan(0.9).expect(State::degraded, Reason::converging);
 }
 
 TEST(HealthMonitor, AVehicleThatIsMovedAtRestIsNoticed) {
-  Feed feed;
-  feed.scans(40, 0.9);
+  Feed feed(40, 0.9);
   feed.metres = 0;
-  for (int i = 0; i < 600; ++i) ASSERT_EQ(feed.scan(0.5).state, State::ok) << i;
-  feed.scans(50, 0.1);
-  feed.expect(State::degraded, Reason::mismatch);
+  for (int i = 0; i < 600; ++i) ASSERT_EQ(feed.scan(0.5).last.state, State::ok) << i;
+  feed.scans(50, 0.1).expect(State::degraded, Reason::mismatch);
 }
 
+/// The map ends: of ten poles near the vehicle it has fewer and fewer, and all of these are found.
+TEST(LeftMap, BeyondTheMapPolesWithoutAMatchSayNothing) {
+  Feed feed;
+  feed.near = {10, 10, 10};
+  feed.scans(60, 1);
+  feed.near = {10, 3, 3.5};
+  feed.scans(40, 0.3).expect(State::degraded, Reason::noPoles);
+  EXPECT_TRUE(feed.monitor.hasLeftMap());
+  feed.near = {10, 0, 0};
+  feed.scans(100, 0).expect(State::degraded, Reason::noPoles);
+  feed.sigma = 6;  // the odometry alone leads
+  feed.scans(2, 0).expect(State::lost, Reason::spread);
+  EXPECT_TRUE(feed.monitor.hasLeftMap()) << "it is still known which poles to expect";
+  feed.sigma = 0.05;
+  feed.near = {10, 8, 9};
+  feed.scans(60, 0.8).expect(State::ok, Reason::none);
+  EXPECT_FALSE(feed.monitor.hasLeftMap());
+}
+
+TEST(LeftMap, WhereTheMapHasPolesThatAreNotSeenThePoseIsWrong) {
+  for (const NearPoles& near : {NearPoles{10, 0, 4}, NearPoles{10, 1, 4}, NearPoles{10, 3, 6}}) {
+    Feed feed;
+    feed.near = {10, 10, 10};
+    feed.scans(60, 1);
+    feed.near = near;
+    feed.scans(60, 0.1).expect(State::degraded, Reason::mismatch);
+    EXPECT_FALSE(feed.monitor.hasLeftMap());
+    feed.near = {10, 0, 4};
+    feed.scans(60, 0).expect(State::lost, Reason::mismatch);
+    feed.near = {10, 0, 0};  // a wrong pose drives on, off the map
+    feed.scans(60, 0).expect(State::lost, Reason::mismatch);
+    EXPECT_FALSE(feed.monitor.hasLeftMap());
+  }
+}
+
+TEST(LeftMap, APoseThatIsNotConfirmedYetHasNotLeftTheMap) {
+  Feed feed;
+  feed.near = {10, 0, 0};
+  feed.scans(60, 0).expect(State::lost, Reason::mismatch);
+  EXPECT_FALSE(feed.monitor.hasLeftMap());
+}
+
+}  // namespace
 }  // namespace polemcl::test_localization_health

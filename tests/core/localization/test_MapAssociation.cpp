@@ -9,10 +9,9 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_map_association {
+namespace {
 
 using namespace polemcl::tests;
-
-namespace {
 
 MapPole mapPole(double x, double y, double sigma) {
   return mapPoleAt(x, y, sigma * sigma);
@@ -25,8 +24,6 @@ PoleDetection detection(double x, double y, double sigma, double confidence = 1)
 }
 
 const AssociationOptions kExact{0.05, 3.5, 1.0};
-
-}  // namespace
 
 TEST(MapAssociation, SquaredDistanceAddsUpAllCovariances) {
   const PoleIndex index({mapPole(10, 0, 0.04)});
@@ -115,4 +112,5 @@ TEST(MapAssociation, NearPolesAreThoseThatTheScanCouldSee) {
   EXPECT_EQ(near.expected, 2) << "one stands behind the wall";
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_association

@@ -7,7 +7,6 @@
 
 namespace polemcl::test_odometry_calibration {
 namespace {
-
 /// A drive in gentle bends whose odometry has a wrong scale and a yaw bias.
 struct Bench {
   double scale, yawBias;  ///< true motion = odometry with these errors
@@ -33,8 +32,6 @@ struct Bench {
     }
   }
 };
-
-}  // namespace
 
 TEST(OdometryCalibration, FindsScaleAndYawBiasWithinItsSigmas) {
   for (const auto& [scale, yaw] :
@@ -171,4 +168,5 @@ TEST(OdometryCalibration, StopsChangeNothing) {
   EXPECT_NEAR(stops.calibration.errors().yaw, drives.calibration.errors().yaw, 5e-5);
 }
 
+}  // namespace
 }  // namespace polemcl::test_odometry_calibration

@@ -9,9 +9,6 @@
 #include "support/StraightDrive.h"
 
 namespace polemcl::test_odometry_monitor {
-
-using namespace polemcl;
-
 namespace {
 
 /// A drive through a city at 10 Hz, `step` metres a scan, odometry off by 2 % of each component.
@@ -103,8 +100,6 @@ std::size_t countReplaced(const std::vector<PoleScan>& scans) {
   }
   return replaced;
 }
-
-}  // namespace
 
 TEST(OdometryMonitor, LeavesAHealthyOdometryAlone) {
   for (const double step : {0.02, 0.3, 0.7, 1.5})
@@ -481,4 +476,5 @@ TEST(OdometryMonitor, AGapEndsTheComparison) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_odometry_monitor

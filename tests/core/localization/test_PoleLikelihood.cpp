@@ -13,10 +13,9 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_pole_likelihood {
+namespace {
 
 using namespace polemcl::tests;
-
-namespace {
 
 PoleDetection exactAt(double x, double y) {
   return detectionAt(x, y, 0);
@@ -87,6 +86,9 @@ double oracle(const Scene& scene, const Pose2D& pose, const LikelihoodOptions& o
     const double m2 = e.dot(S.inverse() * e);
     if (o.model == LikelihoodModel::paper) {
       sum -= confidence * (best ? std::min(0.5 * m2, cost) : cost);
+    } else if (o.model == LikelihoodModel::floored) {
+      sum += std::log(
+          std::exp(-least * least / (2 * squaredSigma)) / o.sigma / std::sqrt(2 * M_PI) + o.floor);
     } else {
       const double p = (1 - o.outlier) * confidence;
       const double beside = std::pow(1 - e.squaredNorm() / (o.gate * o.gate), 3) * confidence;
@@ -100,7 +102,13 @@ double oracle(const Scene& scene, const Pose2D& pose, const LikelihoodOptions& o
 
 constexpr LikelihoodModel kModels[] = {LikelihoodModel::paper, LikelihoodModel::mixture};
 
-}  // namespace
+/// All models, weighted where they can be.
+std::vector<LikelihoodOptions> allOptions() {
+  std::vector<LikelihoodOptions> all{optionsOf(LikelihoodModel::floored, false)};
+  for (const LikelihoodModel model : kModels)
+    for (const bool weighted : {false, true}) all.push_back(optionsOf(model, weighted));
+  return all;
+}
 
 TEST(PoleLikelihood, PaperByHand) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::paper, false);
@@ -151,34 +159,6 @@ TEST(PoleLikelihood, FlooredByHand) {
               1e-12);
 }
 
-TEST(PoleLikelihood, FlooredEqualsItsFormula) {
-  const Scene scene = randomScene(5);
-  for (const double gate : {0.4, 1.0, 3.0})
-    for (const double sigma : {0.05, 1.0, 1.2247})
-      for (const double floor : {1e-6, 0.2, 5.0}) {
-        LikelihoodOptions options = optionsOf(LikelihoodModel::floored, false);
-        options.gate = gate, options.sigma = sigma, options.floor = floor;
-        const PoleIndex index(scene.map, 1.0);
-        const auto expected = [&](const Pose2D& pose) {
-          double sum = 0;
-          for (const PoleDetection& pole : scene.poles) {
-            const Pose2D seen = compose(pose, {pole.x, pole.y, 0});
-            double d = gate;
-            for (const MapPole& other : scene.map)
-              d = std::min(d, std::hypot(seen.x - other.x, seen.y - other.y));
-            sum += std::log(std::exp(-d * d / (2 * sigma * sigma)) / sigma / std::sqrt(2 * M_PI) +
-                            floor);
-          }
-          return sum;
-        };
-        const double offset =
-            logLikelihood(scene.poles, scene.poses[0], index, options) - expected(scene.poses[0]);
-        for (const Pose2D& pose : scene.poses)
-          ASSERT_NEAR(logLikelihood(scene.poles, pose, index, options) - offset, expected(pose),
-                      1e-8 * (1 + std::abs(expected(pose))));
-      }
-}
-
 TEST(PoleLikelihood, FlooredRefusesWhatItCannotDo) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::floored, true);
   EXPECT_REFUSED(checkOptions(options), "weighted");
@@ -190,53 +170,33 @@ TEST(PoleLikelihood, FlooredRefusesWhatItCannotDo) {
   }
 }
 
-TEST(PoleLikelihood, FlooredBatchesGiveTheSameNumbers) {
-  const Scene scene = randomScene(7);
-  const PoleIndex index(scene.map);
-  const LikelihoodOptions options = optionsOf(LikelihoodModel::floored, false);
-  std::vector<std::vector<double>> batch;
-  widenedLogLikelihoods(scene.poles, scene.poses, index, options, {1, 4}, batch);
-  LikelihoodOptions wide = options;
-  wide.sigma *= 4;
-  for (std::size_t i = 0; i < scene.poses.size(); ++i) {
-    EXPECT_EQ(batch[0][i], logLikelihood(scene.poles, scene.poses[i], index, options));
-    EXPECT_EQ(batch[1][i], logLikelihood(scene.poles, scene.poses[i], index, wide));
-  }
-}
-
+// A constant apart: only differences between poses count with the model of a floor.
 TEST(PoleLikelihood, EqualsTheFormulasWordByWord) {
   for (std::uint64_t seed : {1, 2, 3}) {
     const Scene scene = randomScene(seed);
-    for (LikelihoodModel model : kModels) {
-      for (bool weighted : {false, true}) {
-        for (double gate : {0.4, 1.0, 3.0}) {  // the last beyond what the index is prepared for
-          LikelihoodOptions options = optionsOf(model, weighted);
-          options.gate = gate;
-          const PoleIndex index(scene.map, 1.0);
-          for (const Pose2D& pose : scene.poses) {
-            const double expected = oracle(scene, pose, options);
-            ASSERT_NEAR(logLikelihood(scene.poles, pose, index, options), expected,
-                        1e-9 * (1 + std::abs(expected)));
+    const PoleIndex index(scene.map, 1.0);
+    const auto expectEqual = [&](const LikelihoodOptions& options) {
+      double offset = 0;
+      if (options.model == LikelihoodModel::floored)
+        offset = logLikelihood(scene.poles, scene.poses[0], index, options) -
+                 oracle(scene, scene.poses[0], options);
+      for (const Pose2D& pose : scene.poses) {
+        const double expected = oracle(scene, pose, options);
+        ASSERT_NEAR(logLikelihood(scene.poles, pose, index, options) - offset, expected,
+                    1e-9 * (1 + std::abs(expected)));
+      }
+    };
+    for (LikelihoodOptions options : allOptions())
+      for (const double gate : {0.4, 1.0, 3.0}) {  // the last beyond what the index is prepared for
+        options.gate = gate;
+        expectEqual(options);
+        for (const double sigma : {0.05, 1.0, 1.2247})
+          for (const double floor : {1e-6, 0.2, 5.0}) {
+            if (options.model != LikelihoodModel::floored) continue;
+            options.sigma = sigma, options.floor = floor;
+            expectEqual(options);
           }
-        }
       }
-    }
-  }
-}
-
-TEST(PoleLikelihood, BatchGivesTheSameNumbersAsTheSingleCall) {
-  const Scene scene = randomScene(7);
-  const PoleIndex index(scene.map);
-  for (LikelihoodModel model : kModels) {
-    for (bool weighted : {false, true}) {
-      const LikelihoodOptions options = optionsOf(model, weighted);
-      std::vector<double> batch(3, 42);
-      logLikelihoods(scene.poles, scene.poses, index, options, batch);
-      ASSERT_EQ(batch.size(), scene.poses.size());
-      for (std::size_t i = 0; i < batch.size(); ++i) {
-        EXPECT_EQ(batch[i], logLikelihood(scene.poles, scene.poses[i], index, options));
-      }
-    }
   }
 }
 
@@ -254,22 +214,23 @@ TEST(PoleLikelihood, PosesNearEachOtherAreSearchedTogetherToTheSameNumbers) {
   EXPECT_EQ(together, apart);
 }
 
-TEST(PoleLikelihood, SeveralSigmasAtOnceGiveWhatEachGivesAlone) {
+TEST(PoleLikelihood, BatchesAndSeveralSigmasAtOnceGiveWhatEachGivesAlone) {
   const Scene scene = randomScene(11);
   const PoleIndex index(scene.map);
   const std::vector<double> widenings{1, 2, 0.5, 8};
-  for (LikelihoodModel model : kModels) {
-    for (bool weighted : {false, true}) {
-      const LikelihoodOptions options = optionsOf(model, weighted);
-      std::vector<std::vector<double>> batch;
-      widenedLogLikelihoods(scene.poles, scene.poses, index, options, widenings, batch);
-      ASSERT_EQ(batch.size(), widenings.size());
-      for (std::size_t k = 0; k < widenings.size(); ++k) {
-        LikelihoodOptions alone = options;
-        alone.sigma *= widenings[k];
-        for (std::size_t i = 0; i < scene.poses.size(); ++i)
-          EXPECT_EQ(batch[k][i], logLikelihood(scene.poles, scene.poses[i], index, alone));
-      }
+  for (const LikelihoodOptions& options : allOptions()) {
+    std::vector<double> plain(3, 42);
+    logLikelihoods(scene.poles, scene.poses, index, options, plain);
+    std::vector<std::vector<double>> batch;
+    widenedLogLikelihoods(scene.poles, scene.poses, index, options, widenings, batch);
+    ASSERT_EQ(batch.size(), widenings.size());
+    EXPECT_EQ(batch[0], plain);
+    for (std::size_t k = 0; k < widenings.size(); ++k) {
+      LikelihoodOptions alone = options;
+      alone.sigma *= widenings[k];
+      ASSERT_EQ(batch[k].size(), scene.poses.size());
+      for (std::size_t i = 0; i < scene.poses.size(); ++i)
+        EXPECT_EQ(batch[k][i], logLikelihood(scene.poles, scene.poses[i], index, alone));
     }
   }
   std::vector<std::vector<double>> out;
@@ -301,15 +262,11 @@ TEST(PoleLikelihood, StaysFiniteWithThousandsOfUnmatchedPoles) {
 TEST(PoleLikelihood, StaysFiniteWithNumbersThatAreNone) {
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
   const PoleIndex index({mapPoleAt(0, 0, 0)});
-  for (LikelihoodModel model : kModels) {
-    for (bool weighted : {false, true}) {
-      const LikelihoodOptions options = optionsOf(model, weighted);
-      const double unmatched = logLikelihood({exactAt(50, 50)}, {}, index, options);
-      EXPECT_EQ(logLikelihood({exactAt(0, 0)}, {nan, 0, 0}, index, options), unmatched);
-      EXPECT_EQ(logLikelihood({exactAt(0, 0)}, {0, infinity, 0}, index, options), unmatched);
-      EXPECT_EQ(logLikelihood({exactAt(0, 0)}, {0, 0, nan}, index, options), unmatched);
-      EXPECT_EQ(logLikelihood({exactAt(nan, 0)}, {}, index, options), unmatched);
-    }
+  for (const LikelihoodOptions& options : allOptions()) {
+    const double unmatched = logLikelihood({exactAt(50, 50)}, {}, index, options);
+    for (const Pose2D& none : {Pose2D{nan, 0, 0}, {0, infinity, 0}, {0, 0, nan}})
+      EXPECT_EQ(logLikelihood({exactAt(0, 0)}, none, index, options), unmatched);
+    EXPECT_EQ(logLikelihood({exactAt(nan, 0)}, {}, index, options), unmatched);
   }
 }
 
@@ -388,4 +345,5 @@ TEST(PoleLikelihood, RefusesWeightsThatAreNone) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_likelihood

@@ -6,7 +6,6 @@
 #include "sim/common/Random.h"
 
 namespace polemcl::test_pose_modes {
-
 namespace {
 
 struct Cloud {
@@ -22,8 +21,6 @@ struct Cloud {
     }
   }
 };
-
-}  // namespace
 
 TEST(PoseModes, ATightCloudIsItsWeightedMean) {
   Cloud cloud;
@@ -82,4 +79,5 @@ TEST(PoseModes, RefusesWhatHasNoMean) {
   EXPECT_THROW(heaviestMode({{0, 0, 0}}, {-INFINITY}), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pose_modes

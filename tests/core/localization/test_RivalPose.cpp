@@ -8,10 +8,9 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_rival_pose {
+namespace {
 
 using namespace polemcl::tests;
-
-namespace {
 
 const AssociationOptions kExact{0.05, 3.5, 1.0};
 
@@ -42,8 +41,6 @@ RivalPose rivalOf(const std::vector<PoleDetection>& poles_robot) {
   return findRival(poles_robot, associate(poles_robot, robot, index, kExact), kRobot, index,
                    kExact);
 }
-
-}  // namespace
 
 TEST(RivalPose, IsThatOfALidarThatHasMoved) {
   const Pose2D motion{0.3, -0.4, 0.05};
@@ -100,4 +97,5 @@ TEST(RivalPose, IsFoundAmongManyPolesOfTheMap) {
             4u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_rival_pose

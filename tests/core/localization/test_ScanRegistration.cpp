@@ -1,16 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/localization/ScanRegistration.h"
 #include "sim/common/Random.h"
 #include "support/Poles.h"
 
 namespace polemcl::test_scan_registration {
+namespace {
 
 using namespace polemcl::tests;
-
-namespace {
 
 using Poles = std::vector<PoleDetection>;
 
@@ -37,8 +34,6 @@ void expectNear(const Pose2D& a, const Pose2D& b, double metres, double radians)
   EXPECT_NEAR(a.y, b.y, metres);
   EXPECT_NEAR(wrapAngle(a.yaw - b.yaw), 0, radians);
 }
-
-}  // namespace
 
 TEST(ScanRegistration, FindsTheExactMotionFromNearAndFromAfar) {
   const Pose2D motion{1.3, -0.2, 0.1};
@@ -134,4 +129,5 @@ TEST(ScanRegistration, ARowThatMayBeShiftedIsNoticed) {
   for (const double other : {-2.0, 0.0, 6.0}) EXPECT_FALSE(isShifted(kStreet, 2, other)) << other;
 }
 
+}  // namespace
 }  // namespace polemcl::test_scan_registration

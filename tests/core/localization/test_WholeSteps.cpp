@@ -6,14 +6,11 @@
 #include "core/localization/WholeSteps.h"
 
 namespace polemcl::test_whole_steps {
-
 namespace {
 
 double speedOf(const std::optional<TimedMotion>& step) {
   return step ? step->motion.x / step->seconds : -1;
 }
-
-}  // namespace
 
 TEST(WholeSteps, RegularStepsAreHandedOutAsTheyAre) {
   for (const double seconds : {0.05, 0.1, 0.5, 3.0}) {
@@ -143,4 +140,5 @@ TEST(WholeSteps, ABurstLeavesTheUsualLength) {
   EXPECT_NEAR(speedOf(first.add({1, 0, 0}, 0.1)), 10, 1e-9);
 }
 
+}  // namespace
 }  // namespace polemcl::test_whole_steps

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <random>
-#include <set>
 
 #include "core/mapping/BoxMerging.h"
 
 namespace polemcl::test_box_merging {
-
 namespace {
 
 using Groups = std::vector<std::vector<std::uint32_t>>;
@@ -54,8 +52,6 @@ std::vector<LandmarkObservation> randomSightings(std::uint64_t seed, int count) 
     all.push_back(observation(4e5 + place(random), 5e6 + place(random), radius(random)));
   return all;
 }
-
-}  // namespace
 
 TEST(BoxMerging, JoinsByHand) {
   // 0 and 1 overlap; 2 touches 1 by an edge; 3 shares only a corner with 2; 4 stands alone,
@@ -123,4 +119,5 @@ TEST(BoxMerging, TheMeanDoesNotDependOnTheOrder) {
   EXPECT_NEAR(before.x, 4e5, 10);
 }
 
+}  // namespace
 }  // namespace polemcl::test_box_merging

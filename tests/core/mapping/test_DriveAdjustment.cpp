@@ -9,7 +9,6 @@
 
 namespace polemcl::test_drive_adjustment {
 namespace {
-
 using tests::Dice;
 
 /// 400 m of street, an odometry that reads 2 % too much, poses to start from that wander by
@@ -71,8 +70,6 @@ double worstWay(const std::vector<Pose2D>& poses, const std::vector<Pose2D>& tru
   }
   return worst;
 }
-
-}  // namespace
 
 TEST(DriveAdjustment, ShapeOfTheLidarPlaceOfTheInventory) {
   for (const std::uint64_t seed : {3u, 4u, 5u}) {
@@ -151,4 +148,5 @@ TEST(DriveAdjustment, NeedsPolesOfTheMap) {
   EXPECT_REFUSED(drive.adjust(), "stand near one of the map; 3 are needed");
 }
 
+}  // namespace
 }  // namespace polemcl::test_drive_adjustment

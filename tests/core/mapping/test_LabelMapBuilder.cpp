@@ -8,7 +8,6 @@
 #include "core/mapping/LabelMapBuilder.h"
 
 namespace polemcl::test_label_map_builder {
-
 namespace {
 
 constexpr std::uint32_t kTrunk = 71, kPole = 80, kSign = 81, kCar = 10;
@@ -53,8 +52,6 @@ std::vector<MapPole> polesOf(const Scan& scan, int times, LabelMapOptions option
   for (int i = 0; i < times; ++i) scan.addTo(map, pose(0.5 * i, 0.3 * i));
   return map.poles();
 }
-
-}  // namespace
 
 TEST(LabelMapBuilder, PolesStandWhereTheirPointsAre) {
   Scan scan;
@@ -166,4 +163,5 @@ TEST(LabelMapBuilder, RefusesWhatCannotBe) {
   refused([](auto& o) { o.minPoints = 0; });
 }
 
+}  // namespace
 }  // namespace polemcl::test_label_map_builder

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -10,7 +8,6 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_landmark_fusion {
-
 namespace {
 
 LandmarkObservation observation(double x, double y, double variance = 0.01) {
@@ -24,8 +21,6 @@ std::vector<std::uint32_t> all(const std::vector<LandmarkObservation>& observati
   std::iota(members.begin(), members.end(), 0u);
   return members;
 }
-
-}  // namespace
 
 TEST(LandmarkFusion, OneSightingIsThePole) {
   std::vector<LandmarkObservation> observations{observation(3, 4, 0.04)};
@@ -187,4 +182,5 @@ TEST(LandmarkFusion, CertainSightingsGiveACertainPole) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_landmark_fusion

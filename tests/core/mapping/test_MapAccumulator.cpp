@@ -11,8 +11,9 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_map_accumulator {
-
 namespace {
+
+using tests::expectSame;
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -66,18 +67,6 @@ std::vector<bool> chosen(MapAccumulator& map, const std::vector<SessionScan>& sc
   return map.add("s", scans).used;
 }
 
-void expectSame(const std::vector<MapPole>& a, const std::vector<MapPole>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].x, b[i].x);
-    EXPECT_EQ(a[i].y, b[i].y);
-    EXPECT_EQ(a[i].count, b[i].count);
-    EXPECT_EQ(a[i].covariance, b[i].covariance);
-  }
-}
-
-}  // namespace
-
 TEST(MapAccumulator, UsesEverythingUnlessAsked) {
   const auto poles = somePoles();
   const auto first = drive(0, 100, 0, poles), second = drive(50, 150, 2, poles);
@@ -100,38 +89,6 @@ TEST(MapAccumulator, UsesEverythingUnlessAsked) {
     EXPECT_EQ(found.poles[i].history.seen, histories.poles[i].history.seen);
     EXPECT_EQ(found.poles[i].history.lastSeen, histories.poles[i].history.lastSeen);
   }
-}
-
-TEST(MapAccumulator, LaterSessionsCountWhereNobodyHasBeen) {
-  std::mt19937 random(5);
-  const auto walk = [&] {
-    std::vector<SessionScan> scans;
-    double x = random() % 100, y = random() % 100;
-    for (int i = 0; i < 150; ++i) {
-      x += static_cast<double>(random() % 200) / 100 - 0.7;
-      y += static_cast<double>(random() % 200) / 100 - 0.9;
-      scans.push_back(scanAt(x, y, {}));
-    }
-    return scans;
-  };
-  MapAccumulator map = fresh(10);
-  std::vector<Pose2D> visited;
-  std::size_t left = 0, taken = 0;
-  for (int session = 0; session < 6; ++session) {
-    const auto scans = walk();
-    const auto used = chosen(map, scans);
-    for (std::size_t i = 0; i < scans.size(); ++i) {
-      double nearest = 1e9;
-      for (const Pose2D& place : visited)
-        nearest = std::min(nearest, std::hypot(place.x - scans[i].pose_map_robot.x,
-                                               place.y - scans[i].pose_map_robot.y));
-      ASSERT_EQ(used[i], nearest > 10) << session << ' ' << i << ' ' << nearest;
-      (used[i] ? taken : left) += session > 0;
-    }
-    for (const auto& scan : scans) visited.push_back(scan.pose_map_robot);
-  }
-  EXPECT_GT(left, 100u);  // both happen
-  EXPECT_GT(taken, 100u);
 }
 
 TEST(MapAccumulator, PlacesOfScansThatAreNotUsedAreVisitedToo) {
@@ -223,4 +180,5 @@ TEST(MapAccumulator, RefusesASessionInAnotherFrame) {
   EXPECT_NO_THROW(map.add("farther", drive(19000, 19050, 0)));  // near one of them
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_accumulator

@@ -4,18 +4,15 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_map_diff {
+namespace {
 
 using namespace polemcl::tests;
-
-namespace {
 
 std::vector<MapPole> polesAt(const std::vector<std::pair<double, double>>& places) {
   std::vector<MapPole> poles;
   for (const auto& [x, y] : places) poles.push_back(mapPoleAt(x, y));
   return poles;
 }
-
-}  // namespace
 
 TEST(MapDiff, TellsNewVanishedAndMoved) {
   const auto before = polesAt({{0, 0}, {10, 0}, {20, 0}, {30, 0}});
@@ -64,4 +61,5 @@ TEST(MapDiff, RefusesBadInput) {
   EXPECT_THROW(diffMaps(polesAt({{NAN, 0}}), polesAt({{1, 1}})), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_diff

@@ -9,10 +9,9 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_observation_clustering {
+namespace {
 
 using Groups = std::vector<std::vector<std::uint32_t>>;
-
-namespace {
 
 LandmarkObservation observation(double x, double y, std::uint32_t view) {
   LandmarkObservation s;
@@ -69,8 +68,6 @@ Easy easyScene(std::uint64_t seed, double spread) {
   easy.truth = {sets.begin(), sets.end()};
   return easy;
 }
-
-}  // namespace
 
 TEST(ObservationClustering, FindsThePolesWhereThereIsNoDoubt) {
   for (std::uint64_t seed : {1, 2, 3}) {
@@ -244,4 +241,5 @@ TEST(ObservationClustering, NothingToMerge) {
   EXPECT_TRUE(clusterObservations({}, {}).empty());
 }
 
+}  // namespace
 }  // namespace polemcl::test_observation_clustering

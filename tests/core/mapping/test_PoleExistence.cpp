@@ -6,8 +6,6 @@
 
 namespace polemcl::test_pole_existence {
 
-using namespace polemcl;
-
 TEST(PoleExistence, OneScanCountsAsBayesHasIt) {
   ExistenceLikelihood found, missed;
   found.add(true, 0, 0.8);

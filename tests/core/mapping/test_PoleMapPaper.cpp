@@ -7,7 +7,6 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_pole_map_paper {
-
 namespace {
 
 /// The authors' program's map, with sections of 1 m.
@@ -43,8 +42,6 @@ std::vector<MappingScan> drive(const std::vector<std::vector<Eigen::Vector2d>>& 
 }
 
 const Eigen::Vector2d pole(10, 5);
-
-}  // namespace
 
 TEST(PoleMapPaper, AChainIsOnePoleOfPlainMean) {
   // Neighbours 0.2 m apart overlap, the ends, 0.8 m apart, do not.
@@ -110,12 +107,8 @@ TEST(PoleMapPaper, TheOrderOfDetectionsDoesNotMatter) {
   const auto before = buildPoleMap(scans, authors(1)).poles;
   for (auto& scan : scans) std::reverse(scan.poles_robot.begin(), scan.poles_robot.end());
   const auto after = buildPoleMap(scans, authors(1)).poles;
-  ASSERT_EQ(before.size(), after.size());
   ASSERT_GT(before.size(), 5u);
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    EXPECT_EQ(before[i].x, after[i].x);
-    EXPECT_EQ(before[i].y, after[i].y);
-  }
+  tests::expectSame(before, after);
 }
 
 TEST(PoleMapPaper, EveryScanHasNoPassedMiddles) {
@@ -124,4 +117,5 @@ TEST(PoleMapPaper, EveryScanHasNoPassedMiddles) {
   EXPECT_THROW(checkOptions(options), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_map_paper

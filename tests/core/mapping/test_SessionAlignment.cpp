@@ -1,5 +1,4 @@
-/// \file test_SessionAlignment.cpp
-/// \brief Sessions with erring poses are aligned to the map, piece by piece.
+// Sessions with erring poses are aligned to the map, piece by piece.
 
 #include <gtest/gtest.h>
 
@@ -10,9 +9,6 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_session_alignment {
-
-using namespace polemcl;
-
 namespace {
 
 constexpr double kLength = 300;  // m of street
@@ -86,8 +82,6 @@ std::vector<SessionScan> aligned(const std::vector<SessionScan>& scans,
                                  AlignmentSummary* summary = nullptr) {
   return alignedSession(scans, landmarksFrom(map), {}, {}, summary);
 }
-
-}  // namespace
 
 TEST(SessionAlignment, RemovesErrorsOfDecimetres) {
   const auto right = driveThrough(street()), wrong = erring(right);
@@ -205,4 +199,5 @@ TEST(SessionAlignment, UncertainPosesWeighLess) {
   EXPECT_THROW(updateMap(landmarksFrom(map), {broken}, {}, {}), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_session_alignment

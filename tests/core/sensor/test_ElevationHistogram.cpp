@@ -6,7 +6,6 @@
 #include "core/sensor/ElevationHistogram.h"
 
 namespace polemcl::test_elevation_histogram {
-
 namespace {
 
 /// Returns all around at one slope.
@@ -18,8 +17,6 @@ void addCone(std::vector<BeamPoint>& points, double slope, int returns, double r
                       static_cast<float>(rho * slope)});
   }
 }
-
-}  // namespace
 
 // Slopes count up to 2.2. Half a metre lower, those of 2 at 1 m are 2.5.
 TEST(ElevationHistogram, WhatIsTooSteepFromEitherPlaceCountsForNothing) {
@@ -34,4 +31,5 @@ TEST(ElevationHistogram, WhatIsTooSteepFromEitherPlaceCountsForNothing) {
   EXPECT_GT(both.cumulative(own, own).back(), level.cumulative(own, own).back() + 50);
 }
 
+}  // namespace
 }  // namespace polemcl::test_elevation_histogram

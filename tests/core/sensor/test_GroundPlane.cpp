@@ -6,11 +6,10 @@
 #include "support/Clouds.h"
 
 namespace polemcl::test_ground_plane {
+namespace {
 
 using polemcl::clouds::kDegree;
 using polemcl::clouds::PointList;
-
-namespace {
 
 /// A plane `height` under the origin, rising by `alongX`, `alongY` per metre, with boxes on it.
 PointList field(double height, double alongX = 0, double alongY = 0) {
@@ -29,8 +28,6 @@ PointList turnedOver(const PointList& points) {
   for (std::size_t i = 0; i < points.size(); ++i) out.add(points.x[i], -points.y[i], -points.z[i]);
   return out;
 }
-
-}  // namespace
 
 TEST(GroundPlane, GivesHeightAndTilt) {
   // The front of the sensor points up where the ground falls ahead of it.
@@ -115,4 +112,5 @@ TEST(GroundPlane, ThereIsNoneInABlob) {
   EXPECT_FALSE(findGroundPlane({}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_ground_plane

@@ -6,7 +6,6 @@
 #include "core/sensor/PointOrder.h"
 
 namespace polemcl::test_point_order {
-
 namespace {
 
 /// Points at these azimuths, deg, 10 m away.
@@ -25,8 +24,6 @@ std::vector<double> turn(double begin, double step, double span = 360) {
   for (int i = 0; i * std::abs(step) < span; ++i) azimuths.push_back(begin + i * step);
   return azimuths;
 }
-
-}  // namespace
 
 TEST(PointOrder, OneTurnTellsDirectionAndBegin) {
   const auto left = orderOf(turn(100, 0.5)), right = orderOf(turn(-170, -0.5));
@@ -90,4 +87,5 @@ TEST(PointOrder, TurnsBeginWithinAnArcUnlessTheyTurnDifferentWays) {
   EXPECT_EQ(beginArc({left, right}), 0);
 }
 
+}  // namespace
 }  // namespace polemcl::test_point_order

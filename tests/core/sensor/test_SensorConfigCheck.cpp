@@ -9,12 +9,11 @@
 #include "support/SimulatedScans.h"
 
 namespace polemcl::test_sensor_config_check {
+namespace {
 
 using polemcl::clouds::kDegree;
 using polemcl::clouds::PointList;
 using tests::sensorNamed;
-
-namespace {
 
 PointList street(const std::string& lidar, double height) {
   PointList points;
@@ -44,8 +43,6 @@ PointList singleOrigin(int beams, double topDeg, double bottomDeg) {
     }
   return points;
 }
-
-}  // namespace
 
 TEST(SensorConfigCheck, AcceptsEachLidarUnderItsOwnName) {
   for (const auto& [lidar, model] :
@@ -170,4 +167,5 @@ TEST(BeamAgreement, IsMeasured) {
   EXPECT_FALSE(agreement.good());
 }
 
+}  // namespace
 }  // namespace polemcl::test_sensor_config_check

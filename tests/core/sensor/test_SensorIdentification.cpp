@@ -8,11 +8,10 @@
 #include "support/SimulatedScans.h"
 
 namespace polemcl::test_sensor_identification {
+namespace {
 
 using polemcl::clouds::kDegree;
 using polemcl::clouds::PointList;
-
-namespace {
 
 PointList scanOf(const std::string& lidar, double height, bool upsideDown = false) {
   sim::SimulationOptions options;
@@ -58,8 +57,6 @@ struct Expected {
   bool upsideDown;
   const char* model;  ///< that fits
 };
-
-}  // namespace
 
 class SensorInspectionOnStreets : public ::testing::TestWithParam<Expected> {};
 
@@ -227,4 +224,5 @@ TEST(SensorIdentification, RefusesWhatHasNoBeams) {
   EXPECT_THROW(identifySensor({PointsView()}), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_sensor_identification

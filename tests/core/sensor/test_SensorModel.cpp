@@ -11,11 +11,10 @@
 #include "support/Sensors.h"
 
 namespace polemcl::test_sensor_model {
+namespace {
 
 using polemcl::clouds::kDegree;
 using tests::sensorNamed;
-
-namespace {
 
 SensorOptions uniform(int rows, double upDeg, double downDeg) {
   return tests::uniformSensor(rows, upDeg, downDeg, 1000);
@@ -41,8 +40,6 @@ void expectOwnRows(const SensorModel& sensor, std::initializer_list<double> rang
 const std::vector<std::pair<std::string, int>> kBeams = {
     {"hdl64e", 64},      {"hdl32e", 32},   {"vlp16", 16}, {"os1_64", 64},
     {"os1_64_gen2", 64}, {"os1_128", 128}, {"os0_64", 64}};
-
-}  // namespace
 
 TEST(SensorModel, PresetsHaveTheBeamsOfTheirNames) {
   for (const auto& [model, beams] : kBeams)
@@ -221,4 +218,5 @@ TEST(SensorOptions, RefusesAnglesThatHaveNoTangentForAnyModel) {
   EXPECT_REFUSED(checkOptions(options), "elevations_deg = 90");
 }
 
+}  // namespace
 }  // namespace polemcl::test_sensor_model

@@ -6,14 +6,11 @@
 #include "support/TimedDrive.h"
 
 namespace polemcl::test_timing_search {
-
 namespace {
 
 double turned(double a, double b) {
   return std::abs(std::remainder(a - b, 2 * M_PI));
 }
-
-}  // namespace
 
 TEST(TimingSearch, FindsDirectionAndCut) {
   for (const ScanTiming& truth : {ScanTiming{Turn::clockwise, 0.1, M_PI, 0.5},
@@ -147,4 +144,5 @@ TEST(TimingSearch, SaysNothingWithoutPairs) {
   EXPECT_FALSE(searchRangeCorrection({}, {}, {0, 0}));
 }
 
+}  // namespace
 }  // namespace polemcl::test_timing_search

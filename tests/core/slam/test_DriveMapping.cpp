@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
 
@@ -11,7 +10,6 @@
 
 namespace polemcl::test_drive_mapping {
 namespace {
-
 using tests::Dice;
 
 constexpr double kStep = 0.5;        // m
@@ -156,8 +154,6 @@ std::vector<Eigen::Vector2d> evenPoles(double length) {
     for (const double side : {-6.0, 6.0}) poles.emplace_back(way, side);
   return poles;
 }
-
-}  // namespace
 
 TEST(DriveMapping, ClosesTheLoopOfARingRoad) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
@@ -370,4 +366,5 @@ TEST(DriveMapping, NeedsPoles) {
   EXPECT_REFUSED(map({one}), "only 1 poles", "2 are needed");
 }
 
+}  // namespace
 }  // namespace polemcl::test_drive_mapping

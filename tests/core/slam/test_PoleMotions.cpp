@@ -10,7 +10,6 @@
 
 namespace polemcl::test_pole_motions {
 namespace {
-
 using tests::Frame;
 using tests::PoleCity;
 
@@ -55,11 +54,16 @@ class PoleMotionsTest : public testing::Test {
     }
     return most;
   }
+  /// Of all these motions together, m.
+  double errorOfWay(std::size_t begin, std::size_t end) const {
+    Pose2D way;
+    for (std::size_t i = begin; i < end; ++i) way = compose(way, scans[i].motion->mean);
+    const Pose2D right = relative(truth[begin - 1], truth[end - 1]);
+    return std::hypot(way.x - right.x, way.y - right.y);
+  }
   std::vector<PoleScan> scans;
   std::vector<Pose2D> truth;
 };
-
-}  // namespace
 
 TEST_F(PoleMotionsTest, AllMotionsByThePoles) {
   forgetMotions(1, scans.size());
@@ -126,10 +130,7 @@ TEST_F(PoleMotionsTest, TheyTellWhereTheOdometryIsWrong) {
 TEST_F(PoleMotionsTest, TheyTellTheWayOfASlide) {
   for (std::size_t i = 30; i < 50; ++i) scans[i].motion->mean = {};
   EXPECT_GE(fillMotions(scans).contradicted, 19u) << "one scan has few poles in common";
-  Pose2D way;
-  for (std::size_t i = 30; i < 50; ++i) way = compose(way, scans[i].motion->mean);
-  const Pose2D right = relative(truth[29], truth[49]);
-  EXPECT_LT(std::hypot(way.x - right.x, way.y - right.y), 1.5) << "of 20 m";
+  EXPECT_LT(errorOfWay(30, 50), 1.5) << "of 20 m";
 }
 
 /// In slow drives each motion is off by little: it shows over a second.
@@ -141,10 +142,7 @@ TEST_F(PoleMotionsTest, TheyTellTheWayOfASlowSlide) {
       scans[i].motion->mean.y *= share;
     }
     EXPECT_GE(fillMotions(scans).contradicted, 30u);
-    Pose2D way;
-    for (std::size_t i = 100; i < 140; ++i) way = compose(way, scans[i].motion->mean);
-    const Pose2D right = relative(truth[99], truth[139]);
-    EXPECT_LT(std::hypot(way.x - right.x, way.y - right.y), 1.5) << "of 12 m";
+    EXPECT_LT(errorOfWay(100, 140), 1.5) << "of 12 m";
   }
 }
 
@@ -158,10 +156,7 @@ TEST_F(PoleMotionsTest, ASlipIsNotBelievedWhereThePolesSayNothing) {
     if (i >= 18 && i < 23) scans[i].poles_robot.clear();
   }
   EXPECT_GE(fillMotions(scans).contradicted, 16u);
-  Pose2D way;
-  for (std::size_t i = 18; i < 23; ++i) way = compose(way, scans[i].motion->mean);
-  const Pose2D right = relative(truth[17], truth[22]);
-  EXPECT_LT(std::hypot(way.x - right.x, way.y - right.y), 1.5) << "of 10 m";
+  EXPECT_LT(errorOfWay(18, 23), 1.5) << "of 10 m";
   EXPECT_GT(scans[21].motion->covariance(0, 0), scans[18].motion->covariance(0, 0));
 }
 
@@ -242,4 +237,5 @@ TEST_F(PoleMotionsTest, RefusesWhereNothingTellsTheWay) {
   EXPECT_REFUSED(fillMotions(scans), "no odometry leads to scan 21 at 2.1");
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_motions

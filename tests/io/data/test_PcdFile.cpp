@@ -1,17 +1,15 @@
 #include <liblzf/lzf.h>
 
-#include <cmath>
 #include <vector>
 
 #include "io/data/PcdFile.h"
 #include "support/IoFiles.h"
 
 namespace polemcl::test_pcd_file {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 std::string header(const std::string& fields, const std::string& sizes, const std::string& types,
                    int points, const std::string& data) {
@@ -47,8 +45,6 @@ class PcdFileTest : public FolderTest {
     return messageOf([&] { readPcd(file); });
   }
 };
-
-}  // namespace
 
 TEST_F(PcdFileTest, ReadsBinaryPoints) {
   const Cloud cloud =
@@ -170,4 +166,5 @@ TEST_F(PcdFileTest, ReadsARealScan) {
   EXPECT_LT(*std::max_element(cloud.x.begin(), cloud.x.end()), 200);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pcd_file

@@ -6,11 +6,10 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_planar_motion {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 /// Square root of a covariance, for sampling in the tests.
 Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) {
@@ -20,8 +19,6 @@ Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) {
 Eigen::Vector3d vector(const Pose2D& pose) {
   return {pose.x, pose.y, pose.yaw};
 }
-
-}  // namespace
 
 TEST(PoseWithCovariance, ComposesMeansByHand) {
   const PoseWithCovariance a{{1, 0, M_PI / 2}, Eigen::Matrix3d::Zero()},
@@ -169,4 +166,5 @@ TEST(PoseWithCovariance, RefusesNegativeOrEndlessNoise) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_planar_motion

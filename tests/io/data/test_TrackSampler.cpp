@@ -3,10 +3,9 @@
 #include "io/data/TrackSampler.h"
 
 namespace polemcl::test_track_sampler {
+namespace {
 
 using namespace polemcl::io;
-
-namespace {
 
 Eigen::Isometry3d pose(double x, double yaw) {
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
@@ -18,8 +17,6 @@ Eigen::Isometry3d pose(double x, double yaw) {
 double yaw(const Eigen::Isometry3d& p) {
   return std::atan2(p.linear()(1, 0), p.linear()(0, 0));
 }
-
-}  // namespace
 
 TEST(TrackSampler, InterpolatesBetweenSamplesAndTakesSamplesAsTheyAre) {
   TrackSampler track({10.25, 11, 11.5}, 2);
@@ -61,4 +58,5 @@ TEST(TrackSampler, DoesNotUseSamplesOutOfOrder) {
   EXPECT_NEAR(track.poses()[0]->translation().x(), 1.5, 1e-12);
 }
 
+}  // namespace
 }  // namespace polemcl::test_track_sampler

@@ -5,17 +5,14 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_trajectory {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 
 using TrajectoryTest = FolderTest;
 
-namespace {
-
 constexpr double kRootHalf = 0.70710678118654752;
-
-}  // namespace
 
 TEST_F(TrajectoryTest, PlanarByHand) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -194,4 +191,5 @@ TEST_F(TrajectoryTest, ReadsTheTracksOfMulRan) {
   EXPECT_NEAR(length, 6000, 500);  // "6 km city drives"
 }
 
+}  // namespace
 }  // namespace polemcl::test_trajectory

@@ -5,11 +5,10 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_kitti_odometry {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
@@ -25,7 +24,6 @@ const char* const kCameraPoses =
 class KittiOdometryTest : public FolderTest {
  protected:
   void SetUp() override {
-    FolderTest::SetUp();
     for (const char* name : {"000000", "000001", "000002"}) {
       write("sequences/07/velodyne/" + std::string(name) + ".bin", floats({1, 2, 3, 0.5f}));
     }
@@ -34,12 +32,7 @@ class KittiOdometryTest : public FolderTest {
     write("poses/07.txt", kCameraPoses);
   }
   fs::path sequence() const { return path("sequences/07"); }
-  std::string refusal() const {
-    return messageOf([&] { readKittiOdometry(sequence(), kIdentity); });
-  }
 };
-
-}  // namespace
 
 TEST_F(KittiOdometryTest, CamerasPosesBecomeLidarPosesByHand) {
   const ScanFolder folder = readKittiOdometry(sequence(), kIdentity);
@@ -130,7 +123,7 @@ TEST_F(KittiOdometryTest, RefusesUnpaddedNumbers) {
   fs::remove_all(path("sequences/07/velodyne"));
   write("sequences/07/velodyne/10.bin", "");
   write("sequences/07/velodyne/9.bin", "");
-  expectIn(refusal(), "9.bin", "same number of digits");
+  EXPECT_REFUSED(readKittiOdometry(sequence(), kIdentity), "9.bin", "same number of digits");
 }
 
 TEST_F(KittiOdometryTest, RefusesOtherFolders) {
@@ -172,4 +165,5 @@ TEST_F(KittiOdometryTest, ReadsRealScansLaidOutAsASequence) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_kitti_odometry

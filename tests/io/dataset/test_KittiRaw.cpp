@@ -6,11 +6,10 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_kitti_raw {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
@@ -43,7 +42,6 @@ std::string stamp(double seconds) {
 class KittiRawTest : public FolderTest {
  protected:
   void SetUp() override {
-    FolderTest::SetUp();
     std::string times;
     for (int i = 0; i < 5; ++i) {
       addScan(i);
@@ -66,12 +64,7 @@ class KittiRawTest : public FolderTest {
   ScanFolder readDrive(const Eigen::Isometry3d& T_robot_sensor = kIdentity) const {
     return readKittiRaw(path("drive"), path("date"), T_robot_sensor);
   }
-  std::string refusal() const {
-    return messageOf([&] { readDrive(); });
-  }
 };
-
-}  // namespace
 
 TEST_F(KittiRawTest, ParseKittiTimeByHand) {
   EXPECT_EQ(parseKittiTime("1970-01-01 00:00:00", ""), 0);
@@ -255,41 +248,42 @@ TEST_F(KittiRawTest, BlankLinesAtTheEndOfTheTimesCountForNothing) {
 TEST_F(KittiRawTest, RefusesUnpaddedNumbers) {
   write("drive/oxts/data/10.txt", "");
   write("drive/oxts/data/9.txt", "");
-  expectIn(refusal(), "9.txt", "same number of digits");
+  EXPECT_REFUSED(readDrive(), "9.txt", "same number of digits");
   fs::remove_all(path("drive/velodyne_points/data"));
   write("drive/velodyne_points/data/10.bin", "");
   write("drive/velodyne_points/data/9.bin", "");
-  expectIn(refusal(), "9.bin", "same number of digits");
+  EXPECT_REFUSED(readDrive(), "9.bin", "same number of digits");
 }
 
 TEST_F(KittiRawTest, RefusesMalformedOxts) {
   addOxts(3, "49 8.4 112 0 0 0\n");
-  expectIn(refusal(), frameName(3, ".txt") + ":1: ", "6 numbers, 30 expected");
+  EXPECT_REFUSED(readDrive(), frameName(3, ".txt") + ":1: ", "6 numbers, 30 expected");
   addOxts(3, oxtsRow(49, 8.4, 112, 0, 0, 0) + oxtsRow(49, 8.4, 112, 0, 0, 0));
-  expectIn(refusal(), frameName(3, ".txt"), "2 lines");
+  EXPECT_REFUSED(readDrive(), frameName(3, ".txt"), "2 lines");
   addOxts(3, oxtsRow(90, 8.4, 112, 0, 0, 0));
-  expectIn(refusal(), frameName(3, ".txt") + ":1: ", "latitude 90");
+  EXPECT_REFUSED(readDrive(), frameName(3, ".txt") + ":1: ", "latitude 90");
   addOxts(3, oxtsRow(49, 180.1, 112, 0, 0, 0));
-  expectIn(refusal(), frameName(3, ".txt") + ":1: ", "longitude 180.1");
+  EXPECT_REFUSED(readDrive(), frameName(3, ".txt") + ":1: ", "longitude 180.1");
 }
 
 TEST_F(KittiRawTest, RefusesADriveWithoutCommonFrames) {
   fs::remove_all(path("drive/oxts/data"));
   fs::remove(path("drive/oxts/timestamps.txt"));
   addOxts(9, oxtsRow(49, 8.4, 112, 0, 0, 0));
-  expectIn(refusal(), path("drive").string(), "scans 0-4", "oxts 9");
+  EXPECT_REFUSED(readDrive(), path("drive").string(), "scans 0-4", "oxts 9");
 }
 
 TEST_F(KittiRawTest, RefusesADriveWithoutScansOrOxts) {
   EXPECT_REFUSED(readKittiRaw(path("no"), path("date"), kIdentity), path("no").string(),
                  "no folder velodyne_points/data");
   fs::remove_all(path("drive/oxts/data"));
-  expectIn(refusal(), path("drive/oxts/data").string(), "No such file or directory");
+  EXPECT_REFUSED(readDrive(), path("drive/oxts/data").string(), "No such file or directory");
 }
 
 TEST_F(KittiRawTest, RefusesAScanCutShort) {
   write("drive/velodyne_points/data/" + frameName(2, ".bin"), "abc");
-  expectIn(refusal(), frameName(2, ".bin"), "cut short");
+  EXPECT_REFUSED(readDrive(), frameName(2, ".bin"), "cut short");
 }
 
+}  // namespace
 }  // namespace polemcl::test_kitti_raw

@@ -4,11 +4,10 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_labelled_scans {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 std::string labels(std::initializer_list<std::uint32_t> values) {
   std::string bytes(4 * values.size(), '\0');
@@ -23,8 +22,6 @@ class LabelledScansTest : public FolderTest {
     return messageOf([&] { readWorldPoles(file); });
   }
 };
-
-}  // namespace
 
 TEST_F(LabelledScansTest, LabelsStayWithTheirPoints) {
   const auto scan = readLabelledCloud(
@@ -74,4 +71,5 @@ TEST_F(LabelledScansTest, RefusesPolesWithoutAnId) {
     expectIn(refusal("id,x,y,radius,top\n" + std::string(id) + ",1,2,3,4\n"), ":2: ", "whole");
 }
 
+}  // namespace
 }  // namespace polemcl::test_labelled_scans

@@ -1,17 +1,15 @@
-/// \file test_NcltFiles.cpp
-/// \brief Folders of NCLT sessions, as left by the downloader and by its archives.
+// Folders of NCLT sessions, as left by the downloader and by its archives.
 
 #include "io/dataset/Nclt.h"
 #include "support/IoFiles.h"
 #include "support/NcltSamples.h"
 
 namespace polemcl::test_nclt_files {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace testing_nclt;
-
-namespace {
 
 constexpr double kAhead = 2;  ///< length of every motion, m; each has its own covariance
 
@@ -51,8 +49,6 @@ class NcltLayout : public FolderTest {
     expectIn(notes, "the truth's own standard deviation");
   }
 };
-
-}  // namespace
 
 // DATE_vel.tar.gz holds DATE/velodyne_sync/…, DATE_sen.tar.gz holds DATE/odometry_mu.csv, …
 TEST_F(NcltLayout, ArchivesUnpackedWhereTheDownloaderPutsThem) {
@@ -113,4 +109,5 @@ TEST_F(NcltLayout, SaysWhatIsNotUnpacked) {
   EXPECT_REFUSED(load("nclt"), "velodyne_data", "no session in it");
 }
 
+}  // namespace
 }  // namespace polemcl::test_nclt_files

@@ -6,12 +6,11 @@
 #include "support/NcltSamples.h"
 
 namespace polemcl::test_nclt_scans {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace testing_nclt;
-
-namespace {
 
 class NcltScansTest : public FolderTest {
  protected:
@@ -19,13 +18,8 @@ class NcltScansTest : public FolderTest {
     notes.clear();
     return findNcltTurns(write("velodyne_hits.bin", content), notes);
   }
-  std::string refusal(const std::string& content) {
-    return messageOf([&] { find(content); });
-  }
   std::vector<std::string> notes;
 };
-
-}  // namespace
 
 TEST_F(NcltScansTest, ReadsPointsInStepsOfFiveMillimetres) {
   // The first point by hand: 21000 = 5.000 m, 19000 = -5.000 m, 20199 = 0.995 m.
@@ -96,16 +90,17 @@ TEST_F(NcltScansTest, TurnsWithAPauseAreLeftOut) {
 
 TEST_F(NcltScansTest, RefusesDamagedPackets) {
   const std::string good = turning(80, 10.005);
-  expectIn(refusal(good.substr(0, good.size() - 3)), "velodyne_hits.bin", "byte 3184", "cut short");
-  expectIn(refusal(good.substr(0, 3170)), "byte 3160", "cut short");
+  EXPECT_REFUSED(find(good.substr(0, good.size() - 3)), "velodyne_hits.bin", "byte 3184",
+                 "cut short");
+  EXPECT_REFUSED(find(good.substr(0, 3170)), "byte 3160", "cut short");
   std::string damaged = good;
   damaged[40] = 'x';
-  expectIn(refusal(damaged), "byte 40", "44444");
+  EXPECT_REFUSED(find(damaged), "byte 40", "44444");
   damaged = good;
   damaged.replace(8, 4, little(100001, 4));
-  expectIn(refusal(damaged), "byte 0", "100001 points");
-  expectIn(refusal(turning(20, 10.005)), "velodyne_hits.bin", "no whole turn");
-  expectIn(refusal(""), "no whole turn");
+  EXPECT_REFUSED(find(damaged), "byte 0", "100001 points");
+  EXPECT_REFUSED(find(turning(20, 10.005)), "velodyne_hits.bin", "no whole turn");
+  EXPECT_REFUSED(find(""), "no whole turn");
   EXPECT_REFUSED(findNcltTurns(path("no.bin"), notes), "no.bin", "No such file");
 }
 
@@ -148,4 +143,5 @@ TEST_F(NcltScansTest, TheMotionOfTheBodyIsTakenOut) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_nclt_scans

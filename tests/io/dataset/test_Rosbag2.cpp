@@ -9,12 +9,11 @@
 #include "support/RosBags.h"
 
 namespace polemcl::test_rosbag2 {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace polemcl::tests;
-
-namespace {
 
 constexpr double kStart = 1700000000;  ///< s; a double holds it to 0.2 us
 
@@ -34,7 +33,6 @@ std::string odometryAt(TestOdometry odometry) {
 class Rosbag2Test : public FolderTest {
  protected:
   void SetUp() override {
-    FolderTest::SetUp();
     bag.emplace(path("a.db3"));
     clouds = bag->topic("/points", pointCloud2);
     odometry = bag->topic("/odom", odometry2);
@@ -52,9 +50,6 @@ class Rosbag2Test : public FolderTest {
     }
   }
   ScanFolder load() { return readRosbag2(path("a.db3"), options); }
-  std::string refusal() {
-    return messageOf([&] { load(); });
-  }
 
   std::optional<TestBag> bag;
   int clouds = 0, odometry = 0, transforms = 0;
@@ -66,8 +61,6 @@ void expectNote(const ScanFolder& folder, const std::string& text) {
   for (const auto& note : folder.notes) all += note + " | ";
   EXPECT_HAS(all, text);
 }
-
-}  // namespace
 
 TEST_F(Rosbag2Test, ReadsCloudsOneByOne) {
   for (const double time : {0.5, 0.6, 0.6, 0.7})
@@ -140,7 +133,8 @@ TEST_F(Rosbag2Test, RefusesARobotWhoseZPointsDown) {
     motion.down = true;
     bag->add(odometry, 0, odometryAt(motion));
   }
-  expectIn(refusal(), "/odom: its z axis points down; a frame with x ahead and z up is expected");
+  EXPECT_REFUSED(load(),
+                 "/odom: its z axis points down; a frame with x ahead and z up is expected");
 }
 
 TEST_F(Rosbag2Test, OdometryThatIsNotReadMayBeAnything) {
@@ -166,8 +160,8 @@ TEST_F(Rosbag2Test, ScansThatBeginAtAMovingAzimuth) {
 TEST_F(Rosbag2Test, RefusesCloudsInTheFrameOfTheOdometry) {
   bag->add(clouds, 0, cloudAt(0.1, "odom"));
   bag->add(odometry, 0, odometryAt({}));
-  expectIn(refusal(), "/points: these clouds are in odom, the frame of the odometry",
-           "--cloud-topic");
+  EXPECT_REFUSED(load(), "/points: these clouds are in odom, the frame of the odometry",
+                 "--cloud-topic");
 }
 
 TEST_F(Rosbag2Test, CloudsWithoutAFrameOrInThatOfTheRobotAreTaken) {
@@ -316,25 +310,25 @@ TEST_F(Rosbag2Test, WithoutTimesTheTimingCanBeStated) {
 TEST_F(Rosbag2Test, SeveralTopicsMustBeChosen) {
   writeDrive(2, {});
   bag->add(bag->topic("/rear", pointCloud2), 0, cloudAt(0.05));
-  expectIn(refusal(), "several topics of sensor_msgs/msg/PointCloud2: ",
-           "/points (2 messages), /rear (1 messages)", "--cloud-topic");
+  EXPECT_REFUSED(load(), "several topics of sensor_msgs/msg/PointCloud2: ",
+                 "/points (2 messages), /rear (1 messages)", "--cloud-topic");
   options.topics.cloud = "/rear";
   EXPECT_EQ(load().scans.size(), 1u);
   bag->add(bag->topic("/wheels", odometry2), 0, odometryAt({0}));
-  expectIn(refusal(), "/odom (3 messages), /wheels (1 messages)", "--odometry-topic");
+  EXPECT_REFUSED(load(), "/odom (3 messages), /wheels (1 messages)", "--odometry-topic");
   options.topics.odometry = "/odom";
   EXPECT_EQ(load().scans.size(), 1u);
   options.topics.cloud = "/odom";
-  expectIn(refusal(), "--cloud-topic /odom: no such topic of sensor_msgs/msg/PointCloud2",
-           "there are: /points (2 messages), /rear (1 messages)");
+  EXPECT_REFUSED(load(), "--cloud-topic /odom: no such topic of sensor_msgs/msg/PointCloud2",
+                 "there are: /points (2 messages), /rear (1 messages)");
   options.topics = {"/rear", "/odom", "/imu"};
-  expectIn(refusal(), "--imu-topic /imu: no such topic", "there are: none");
+  EXPECT_REFUSED(load(), "--imu-topic /imu: no such topic", "there are: none");
 }
 
 TEST_F(Rosbag2Test, RefusesBagsWithoutClouds) {
   bag->add(bag->topic("/packets", "velodyne_msgs/msg/VelodyneScan"), 0, "x");
-  expectIn(refusal(), "no clouds", "/packets (velodyne_msgs/msg/VelodyneScan, 1 messages)",
-           "driver");
+  EXPECT_REFUSED(load(), "no clouds", "/packets (velodyne_msgs/msg/VelodyneScan, 1 messages)",
+                 "driver");
 }
 
 // SQLite lists messages by the index of their times.
@@ -344,14 +338,14 @@ TEST_F(Rosbag2Test, RefusesAnIndexThatLacksMessages) {
       "CREATE TABLE none(time INTEGER); CREATE INDEX none_idx ON none (time);"
       "PRAGMA writable_schema = ON; UPDATE sqlite_master SET rootpage = (SELECT rootpage FROM "
       "sqlite_master WHERE name = 'none_idx') WHERE name = 'timestamp_idx'");
-  expectIn(refusal(), "/points: damaged: it has 3 messages, but lists 0");
+  EXPECT_REFUSED(load(), "/points: damaged: it has 3 messages, but lists 0");
 }
 
 TEST_F(Rosbag2Test, RefusesAnImuWithoutOdometry) {
   bag->add(clouds, 0, cloudAt(1));
   bag->add(bag->topic("/imu", imu2), 0, imuMessage(1, "imu", {}, 0));
   options.topics.imu = "/imu";
-  expectIn(refusal(), "--imu-topic gives the yaw only", "nav_msgs/msg/Odometry");
+  EXPECT_REFUSED(load(), "--imu-topic gives the yaw only", "nav_msgs/msg/Odometry");
 }
 
 TEST_F(Rosbag2Test, RefusesAnImuAtOtherScansThanTheOdometry) {
@@ -359,25 +353,25 @@ TEST_F(Rosbag2Test, RefusesAnImuAtOtherScansThanTheOdometry) {
   bag->add(odometry, 0, odometryAt({1}));
   bag->add(bag->topic("/imu", imu2), 0, imuMessage(kStart + 2, "imu", {}, 0));
   options.topics.imu = "/imu";
-  expectIn(refusal(), "no scan has both odometry and IMU", "1700000001.000", "1700000002.000");
+  EXPECT_REFUSED(load(), "no scan has both odometry and IMU", "1700000001.000", "1700000002.000");
 }
 
 TEST_F(Rosbag2Test, RefusesMessagesThatContradictEachOther) {
   bag->add(clouds, 0, cloudAt(1));
   bag->add(clouds, 1, cloudAt(2, "rear"));
-  expectIn(refusal(), "/points, message 2: frame rear, that of the clouds before is lidar");
+  EXPECT_REFUSED(load(), "/points, message 2: frame rear, that of the clouds before is lidar");
   SetUp();
   for (int i = 0; i < 3; ++i) bag->add(clouds, i, cloudAt(0));
-  expectIn(refusal(), "/points: the stamps of 2 of 3 clouds are not later");
+  EXPECT_REFUSED(load(), "/points: the stamps of 2 of 3 clouds are not later");
   SetUp();
   bag->add(clouds, 0, cloudAt(1));
   bag->add(odometry, 1, odometryAt({1}));
   bag->add(odometry, 2, odometryAt({2, 0, 0, 0, {}, "trailer"}));
-  expectIn(refusal(), "/odom, message 3: child frame trailer");
+  EXPECT_REFUSED(load(), "/odom, message 3: child frame trailer");
   SetUp();
   bag->add(clouds, 0, cloudAt(1));
   bag->add(odometry, 1, odometryAt({5}));
-  expectIn(refusal(), "no odometry at the time of any scan", "1700000005.000");
+  EXPECT_REFUSED(load(), "no odometry at the time of any scan", "1700000005.000");
 }
 
 TEST_F(Rosbag2Test, RefusesTruncatedMessages) {
@@ -388,9 +382,9 @@ TEST_F(Rosbag2Test, RefusesTruncatedMessages) {
   EXPECT_EQ(folder.read(folder.scans[0]).size(), 1u);
   EXPECT_REFUSED(folder.read(folder.scans[1]), "a.db3: /points, message 2: cut short");
   bag->run("UPDATE messages SET data = substr(data, 1, 300) WHERE id = 5");
-  expectIn(refusal(), "a.db3: /odom, message 5: cut short");
+  EXPECT_REFUSED(load(), "a.db3: /odom, message 5: cut short");
   bag->run("UPDATE messages SET data = substr(data, 1, 9) WHERE id = 3");
-  expectIn(refusal(), "a.db3: /points, message 3: cut short");
+  EXPECT_REFUSED(load(), "a.db3: /points, message 3: cut short");
 }
 
 TEST_F(Rosbag2Test, TakesPositionsFromSatellites) {
@@ -427,7 +421,8 @@ TEST_F(Rosbag2Test, OfSeveralReceiversOneIsChosen) {
   EXPECT_EQ(load().fixes[0].latitude, 50);
   EXPECT_EQ(load().fixes[0].antenna_robot, Eigen::Vector2d(0, 0));
   options.topics.fixes = "/points";
-  expectIn(refusal(), "--gnss-topic /points: no such topic");
+  EXPECT_REFUSED(load(), "--gnss-topic /points: no such topic");
 }
 
+}  // namespace
 }  // namespace polemcl::test_rosbag2

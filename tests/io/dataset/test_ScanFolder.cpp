@@ -5,11 +5,10 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_scan_folder {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
@@ -22,7 +21,6 @@ std::string leftAt(const std::string& x, const std::string& y, const std::string
 class ScanFolderTest : public FolderTest {
  protected:
   void SetUp() override {
-    FolderTest::SetUp();
     for (const char* name : {"000000", "000001", "000002"}) addScan(name);
     write("times.txt", "# s\n0.0\n0.1\n0.25\n");
   }
@@ -33,12 +31,7 @@ class ScanFolderTest : public FolderTest {
     fs::remove_all(path("velodyne"));
     for (const char* name : {a, b, c}) addScan(name);
   }
-  std::string refusal() const {
-    return messageOf([&] { readScanFolder(m_folder, kIdentity); });
-  }
 };
-
-}  // namespace
 
 TEST_F(ScanFolderTest, ScansAndTimesAlone) {
   const ScanFolder folder = readScanFolder(m_folder, kIdentity);
@@ -129,9 +122,10 @@ TEST_F(ScanFolderTest, OneScanNeedsNoMotion) {
 
 TEST_F(ScanFolderTest, RefusesAFolderWithoutScans) {
   fs::remove_all(path("velodyne"));
-  expectIn(refusal(), path("velodyne").string(), "No such file or directory");
+  EXPECT_REFUSED(readScanFolder(m_folder, kIdentity), path("velodyne").string(),
+                 "No such file or directory");
   fs::create_directory(path("velodyne"));
-  expectIn(refusal(), path("velodyne").string(), "no *.bin");
+  EXPECT_REFUSED(readScanFolder(m_folder, kIdentity), path("velodyne").string(), "no *.bin");
 }
 
 TEST_F(ScanFolderTest, RefusesFilesThatAreMissingOrWrong) {
@@ -163,7 +157,8 @@ TEST_F(ScanFolderTest, RefusesFilesThatAreMissingOrWrong) {
 
 TEST_F(ScanFolderTest, RefusesPosesThatAreALinkToNothing) {
   fs::create_symlink(path("gone.txt"), path("poses.txt"));
-  expectIn(refusal(), path("poses.txt").string(), "No such file or directory");
+  EXPECT_REFUSED(readScanFolder(m_folder, kIdentity), path("poses.txt").string(),
+                 "No such file or directory");
 }
 
 TEST_F(ScanFolderTest, RefusesMorePosesWhenScansAreNotNumberedFromZero) {
@@ -171,22 +166,24 @@ TEST_F(ScanFolderTest, RefusesMorePosesWhenScansAreNotNumberedFromZero) {
   write("poses.txt", leftAt("0", "0", "0") + leftAt("1", "0", "0") + leftAt("2", "0", "0") +
                          leftAt("3", "0", "0"));
   renameScans("000000", "000001", "000003");  // one is missing
-  expectIn(refusal(), path("poses.txt").string(), "4 poses for 3 scans", "not clear");
+  EXPECT_REFUSED(readScanFolder(m_folder, kIdentity), path("poses.txt").string(),
+                 "4 poses for 3 scans", "not clear");
   renameScans("a", "b", "c");
-  expectIn(refusal(), "not clear");
+  EXPECT_REFUSED(readScanFolder(m_folder, kIdentity), "not clear");
   renameScans("000001", "000002", "000003");
-  expectIn(refusal(), "not clear");
+  EXPECT_REFUSED(readScanFolder(m_folder, kIdentity), "not clear");
 }
 
 TEST_F(ScanFolderTest, RefusesAScanThatIsALinkToNothing) {
   fs::remove(path("velodyne/000001.bin"));
   fs::create_symlink(path("gone.bin"), path("velodyne/000001.bin"));
-  expectIn(refusal(), path("velodyne/000001.bin").string(), "No such file or directory");
+  EXPECT_REFUSED(readScanFolder(m_folder, kIdentity), path("velodyne/000001.bin").string(),
+                 "No such file or directory");
 }
 
 TEST_F(ScanFolderTest, RefusesUnpaddedNumbers) {
   renameScans("9", "10", "11");
-  expectIn(refusal(), "same number of digits");
+  EXPECT_REFUSED(readScanFolder(m_folder, kIdentity), "same number of digits");
 }
 
 TEST_F(ScanFolderTest, ReadsTheRealDrive) {
@@ -254,4 +251,5 @@ TEST_F(ScanFolderTest, FoldersOfPcdFiles) {
   EXPECT_EQ(holed.read(holed.scans[1]).size(), 0u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_scan_folder

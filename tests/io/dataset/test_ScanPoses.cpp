@@ -2,11 +2,10 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_scan_poses {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 /// Scans at 10, 11, 12, … s, each one metre ahead of the previous one.
 ScanFolder line(std::size_t scans) {
@@ -23,8 +22,6 @@ ScanFolder line(std::size_t scans) {
 Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 
 class ScanPosesTest : public FolderTest {};
-
-}  // namespace
 
 TEST_F(ScanPosesTest, MotionsOfScansThatAreLeftOutGoIntoTheNext) {
   ScanFolder folder = line(6);
@@ -152,4 +149,5 @@ TEST_F(ScanPosesTest, RefusesTimesThatDoNotOverlap) {
                  "10.000 ... 12.000 s");
 }
 
+}  // namespace
 }  // namespace polemcl::test_scan_poses

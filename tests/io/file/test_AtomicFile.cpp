@@ -8,6 +8,7 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_atomic_file {
+namespace {
 
 using namespace polemcl::io::test;
 using polemcl::io::AtomicFile;
@@ -16,13 +17,9 @@ using AtomicFileTest = FolderTest;
 using testing_disk::DiskCalls;
 using Names = std::vector<std::string>;
 
-namespace {
-
 std::size_t entries(const fs::path& folder) {
   return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
 }
-
-}  // namespace
 
 TEST_F(AtomicFileTest, AppearsOnlyWhenCommitted) {
   AtomicFile file(path("out.bin"));
@@ -233,4 +230,5 @@ TEST_F(AtomicFileTest, FullDiskIsNoticedWhenOnlyTheLastBytesDoNotFit) {
   EXPECT_EQ(entries(m_folder), 0u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_atomic_file

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <polemcl/core/common/Types.h>
 #include "io/file/Date.h"
 
 namespace polemcl::test_date {

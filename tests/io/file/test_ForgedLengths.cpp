@@ -1,5 +1,4 @@
-/// \file test_ForgedLengths.cpp
-/// \brief False lengths and counts in files must give an error and must not allocate memory.
+// False lengths and counts in files must give an error and must not allocate memory.
 
 #include <zlib.h>
 
@@ -20,12 +19,11 @@
 #include "support/NumpyFiles.h"
 
 namespace polemcl::test_forged_lengths {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace polemcl::tests;
-
-namespace {
 
 constexpr std::size_t kMegabyte = 1 << 20;
 
@@ -67,8 +65,6 @@ std::string poleMap(const std::string& tag, const std::string& content,
   file.putRaw(payload.bytes());
   return file.bytes();
 }
-
-}  // namespace
 
 TEST_F(ForgedLengths, TheCounterSeesWhatTheLibraryTakes) {
   const fs::path file = write("a.bin", std::string(3 * kMegabyte, 'x'));
@@ -166,4 +162,5 @@ TEST_F(ForgedLengths, InCompressedText) {
            "MB of text, uncompressed");
 }
 
+}  // namespace
 }  // namespace polemcl::test_forged_lengths

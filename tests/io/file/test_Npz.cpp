@@ -5,12 +5,10 @@
 #include "support/NumpyFiles.h"
 
 namespace polemcl::test_npz {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 const std::string sixDoubles = doubles({1, 2, 3, 4, 5, 6});
 const std::string cDictionary = dictionary("<f8", "False", "(3, 2)");
@@ -37,8 +35,6 @@ class NpzTest : public FolderTest {
     return NpzFile(write("a.npz", zip({{"a.npy", npy}}))).array("a");
   }
 };
-
-}  // namespace
 
 TEST_F(NpzTest, ReadsArraysByHand) {
   const NumberArray array = parsed(sample);
@@ -202,4 +198,5 @@ TEST_F(NpzTest, ManyFlippedBytesNeverCrash) {
   EXPECT_GT(refused, 1000);
 }
 
+}  // namespace
 }  // namespace polemcl::test_npz

@@ -6,12 +6,9 @@
 
 namespace polemcl::io::test_process {
 namespace {
-
 std::string messageOfShell(const std::string& script) {
   return tests::messageOf([&] { runFilter({"/bin/sh", "-c", script}, ""); });
 }
-
-}  // namespace
 
 TEST(Process, AFilterTakesAndGivesAnyBytes) {
   std::string bytes(3'000'000, '\0');  // more than a pipe holds
@@ -36,8 +33,8 @@ TEST(Process, AFailureIsToldByItsLastLine) {
 }
 
 TEST(Process, AScriptThatIsNotInstalledIsNamed) {
-  EXPECT_NE(tests::messageOf([] { pythonScript("none.py"); }).find("report/none.py"),
-            std::string::npos);
+  EXPECT_HAS(tests::messageOf([] { pythonScript("none.py"); }), "report/none.py");
 }
 
+}  // namespace
 }  // namespace polemcl::io::test_process

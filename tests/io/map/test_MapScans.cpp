@@ -7,11 +7,10 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_map_scans {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 class MapScans : public FolderTest {};
 
@@ -87,8 +86,6 @@ PoleMapData onePole() {
   return data;
 }
 
-}  // namespace
-
 TEST_F(MapScans, ComeBackToTheLastBit) {
   const AddedSessions before = sample();
   expectSame(unpackMapScans(packMapScans(before), "x: "), before);
@@ -124,4 +121,5 @@ TEST_F(MapScans, RefuseToBeDamaged) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_map_scans

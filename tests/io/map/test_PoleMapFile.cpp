@@ -10,12 +10,11 @@
 #include "support/Poles.h"
 
 namespace polemcl::test_pole_map_file {
+namespace {
 
 using namespace polemcl::tests;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 constexpr std::size_t kHeaderBytes = 24;
 
@@ -59,8 +58,6 @@ class PoleMapFileTest : public FolderTest {
     return messageOf([&] { writePoleMap(path("m.polemap"), data); });
   }
 };
-
-}  // namespace
 
 TEST_F(PoleMapFileTest, ComesBack) {
   PoleMapData data;
@@ -327,4 +324,5 @@ TEST_F(PoleMapFileTest, DamageUnderARightChecksumNeverCrashes) {
   EXPECT_GT(read, 100);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_map_file

@@ -7,11 +7,10 @@
 #include "support/NumpyFiles.h"
 
 namespace polemcl::test_pole_positions {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 using Positions = std::vector<Eigen::Vector2d>;
 
@@ -22,8 +21,6 @@ class PolePositionsTest : public FolderTest {
     return messageOf([&] { readPolePositions(file); });
   }
 };
-
-}  // namespace
 
 TEST_F(PolePositionsTest, WritesCsvByHand) {
   MapPole p;
@@ -147,4 +144,5 @@ TEST_F(PolePositionsTest, ReadsTheTruthOfAllKittiSequences) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_positions

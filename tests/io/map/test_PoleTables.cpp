@@ -1,52 +1,33 @@
 #include "io/map/PoleTables.h"
 #include "support/IoFiles.h"
 #include "support/NumpyFiles.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_pole_tables {
+namespace {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
-
-namespace {
 
 class PoleTables : public FolderTest {};
 
 PoleMapData sample() {
   PoleMapData map;
   for (int i = 0; i < 3; ++i) {
-    MapPole pole;
-    pole.x = 1.5 + i;
-    pole.y = -2.25 * i;
-    pole.radius = 0.125;
-    pole.bottom = 0.25;
-    pole.top = 4.5;
-    pole.confidence = 0.75;
-    pole.covariance << 0.04, 0.01, 0.01, 0.09;
-    pole.count = 17u + static_cast<unsigned>(i);
-    map.poles.push_back(pole);
+    map.poles.push_back(tests::variedMapPole(1.5 + i, -2.25 * i));
+    map.poles.back().count += static_cast<unsigned>(i);
     map.histories.push_back({12, 3, 0.875, 1326585600, i == 1 ? 0.0 : 1331942400});
   }
   return map;
 }
 
-}  // namespace
-
 TEST_F(PoleTables, CsvComesBack) {
   const PoleMapData before = sample();
   writePoleCsv(path("m.csv"), before.poles, before.histories);
   const PoleMapData after = readPoleCsv(path("m.csv"));
-  ASSERT_EQ(after.poles.size(), 3u);
+  tests::expectSame(after.poles, before.poles);
   ASSERT_EQ(after.histories.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(after.poles[i].x, before.poles[i].x);
-    EXPECT_EQ(after.poles[i].y, before.poles[i].y);
-    EXPECT_EQ(after.poles[i].radius, 0.125);
-    EXPECT_EQ(after.poles[i].bottom, 0.25);
-    EXPECT_EQ(after.poles[i].top, 4.5);
-    EXPECT_EQ(after.poles[i].confidence, 0.75);
-    EXPECT_EQ(after.poles[i].covariance, before.poles[i].covariance);
-    EXPECT_EQ(after.poles[i].count, before.poles[i].count);
     EXPECT_EQ(after.histories[i].existence, 0.875);
     EXPECT_EQ(after.histories[i].seen, 12u);
     EXPECT_EQ(after.histories[i].missed, 3u);
@@ -106,4 +87,5 @@ TEST_F(PoleTables, ReadsTheAuthorsFiles) {
   EXPECT_EQ(truth.poles.front().radius, 0.1);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_tables

@@ -1,31 +1,22 @@
-/// \file test_PublishedMaps.cpp
-/// \brief Scores of the authors' own NCLT map, as published or recomputed by them and others.
-
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
+// Scores of the authors' own NCLT map, as published or recomputed by them and others.
 
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/map/PoleTables.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::test_published_maps {
-
 namespace {
 
 class PublishedMaps : public testing::Test {
  protected:
   void SetUp() override {
-    const char* data = std::getenv("POLEMCL_DATA");
-    if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
-    const std::filesystem::path folder = std::filesystem::path(data) / "published";
+    POLEMCL_NEEDS_DATA();
+    const auto folder = testing_apps::dataFolder() / "published";
     truth = io::readPolePositions(folder / "nclt_truth.npz");
     map = io::readPolePositions(folder / "nclt_map_8_0.50_0.08.npz");
   }
   std::vector<Eigen::Vector2d> truth, map;
 };
-
-}  // namespace
 
 TEST_F(PublishedMaps, NcltTheAuthorsWay) {
   ASSERT_EQ(truth.size(), 1205u);
@@ -49,4 +40,5 @@ TEST_F(PublishedMaps, NcltOneToOne) {
   EXPECT_NEAR(half.f1, 0.542, 5e-4);
 }
 
+}  // namespace
 }  // namespace polemcl::test_published_maps

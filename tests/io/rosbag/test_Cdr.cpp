@@ -4,12 +4,11 @@
 #include "support/IoFiles.h"
 
 namespace polemcl::test_cdr {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace std::string_literals;
-
-namespace {
 
 std::string refusal(
     const std::string& message,
@@ -19,8 +18,6 @@ std::string refusal(
     reading(reader);
   });
 }
-
-}  // namespace
 
 TEST(Cdr, AlignsFromTheByteAfterTheHeader) {
   // uint8 5, uint32 at 4, text "ab" at 8, uint16 at 16 (after 4 + 3 bytes of text), double at 24.
@@ -60,4 +57,5 @@ TEST(Cdr, ForgedSizesAreRefusedBeforeAnythingIsRead) {
   expectIn(refusal("\0\1\0\0\2\0\0\0"s, number), "cut short: 8 bytes expected, 4 left");
 }
 
+}  // namespace
 }  // namespace polemcl::test_cdr

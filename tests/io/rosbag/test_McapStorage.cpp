@@ -1,16 +1,14 @@
-#include "io/file/Decompress.h"
 #include "io/rosbag/Bag.h"
 #include "support/IoFiles.h"
 #include "support/McapFiles.h"
 #include "support/RosBags.h"
 
 namespace polemcl::test_mcap_storage {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace polemcl::tests;
-
-namespace {
 
 const std::string about = mcapSchema(1, "T") + mcapChannel(7, 1, "/points");
 const std::string first = mcapMessage(7, 10, "first"), second = mcapMessage(7, 20, "second"),
@@ -40,8 +38,6 @@ class McapTest : public FolderTest {
 };
 
 const std::vector<std::string> all{"first", "second", "third"};
-
-}  // namespace
 
 TEST_F(McapTest, ReadsMessagesWithoutChunksInTheOrderOfRecording) {
   EXPECT_EQ(contentsOf(mcapFile(about + third + first + second)), all);
@@ -197,4 +193,5 @@ TEST_F(McapTest, ReadsMessagesThatAreCompressedEach) {
   EXPECT_REFUSED(contents("in"), "/points, message 1: damaged: it cannot be decompressed");
 }
 
+}  // namespace
 }  // namespace polemcl::test_mcap_storage

@@ -5,12 +5,11 @@
 #include "support/McapFiles.h"
 
 namespace polemcl::test_mcap_writer {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace polemcl::tests;
-
-namespace {
 
 class McapWriterTest : public FolderTest {
  protected:
@@ -28,8 +27,6 @@ class McapWriterTest : public FolderTest {
   }
   static constexpr std::uint64_t messages = 2500;
 };
-
-}  // namespace
 
 TEST_F(McapWriterTest, OurReaderFindsTheSameMessages) {
   writeBag("a.mcap");
@@ -91,4 +88,5 @@ TEST_F(McapWriterTest, SchemasStateEachTypeOnce) {
   EXPECT_REFUSED(rosSchema("my_msgs/msg/Mine"), "my_msgs/msg/Mine: no message that is written");
 }
 
+}  // namespace
 }  // namespace polemcl::test_mcap_writer

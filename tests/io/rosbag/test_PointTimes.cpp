@@ -4,12 +4,11 @@
 #include "support/RosBags.h"
 
 namespace polemcl::test_point_times {
+namespace {
 
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace polemcl::tests;
-
-namespace {
 
 RosCloud turn(int sign, double cut, double begin, double seconds = 0.1) {
   return decodeCloud(turningCloud(100, sign, cut, begin, seconds).message(), "", true);
@@ -40,8 +39,6 @@ void expectTimesOf(const RosCloud& scan, const ScanTiming& timing, double tolera
                 tolerance)
         << i;
 }
-
-}  // namespace
 
 TEST(PointTimes, FindsBothDirectionsAndAnyStamp) {
   for (const int sign : {-1, 1})
@@ -161,4 +158,5 @@ TEST(PointTimes, PartialScansAreNotUsed) {
   expectIn(estimate.note(), "turns of 0.1 s, counterclockwise, cut at", "stamped at 0 of the turn");
 }
 
+}  // namespace
 }  // namespace polemcl::test_point_times

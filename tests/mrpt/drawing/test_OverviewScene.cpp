@@ -7,7 +7,6 @@
 
 namespace polemcl::test_overview_scene {
 namespace {
-
 scene::Path alongALine(double length, double heading, double x = 0, double y = 0) {
   scene::Path path;
   for (double s = 0; s <= length; s += length / 200)
@@ -57,8 +56,6 @@ void expectInView(const scene::Path& places, const Eigen::Vector2d& origin = {0,
   EXPECT_GT(widest, 0.8);
   EXPECT_LT(farthest, 1000) << "viewers draw up to 10000";
 }
-
-}  // namespace
 
 TEST(OverviewScene, TheCameraSeesAllWhateverItsShapeAndSize) {
   for (double heading : {0.0, 0.7, 1.6, 3.0}) expectInView(alongALine(1500, heading));
@@ -143,4 +140,5 @@ TEST(SceneParts, TheLegendIsAsWideAsItsLinesAndMarksStandBesideTheirs) {
   EXPECT_NEAR(markAt, panel->getTextMessages().messages.at(1).y + 6, 0.1) << "half the letters";
 }
 
+}  // namespace
 }  // namespace polemcl::test_overview_scene

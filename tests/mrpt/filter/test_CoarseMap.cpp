@@ -1,14 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleStreet.h"
 
 namespace polemcl::test_coarse_map {
-
-using namespace polemcl;
-
 namespace {
 
 /// The map of a street as an inventory states it: each pole off by `sigma` along each axis.
@@ -52,8 +47,6 @@ Errors errorsIn(const LocalizationMap& map, const tests::PoleStreet& street) {
   return errors;
 }
 
-}  // namespace
-
 TEST(LocalizationMap, IsCoarseWhenItsPolesAreFarLessCertainThanTheLikelihood) {
   const tests::PoleStreet street = tests::makeStreet();
   EXPECT_FALSE(inventoryOf(street, 0.1, 1).coarse);  // a pole's covariance where nothing is known
@@ -84,4 +77,5 @@ TEST(LocalizationPipeline, TellsHowUncertainItIsInAnInventory) {
   EXPECT_GT(mean.nees, 0.5);
 }
 
+}  // namespace
 }  // namespace polemcl::test_coarse_map

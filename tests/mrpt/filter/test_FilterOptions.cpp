@@ -7,7 +7,6 @@
 #include "mrpt/filter/FilterOptions.h"
 
 namespace polemcl::test_filter_options {
-
 namespace {
 
 struct All {
@@ -29,8 +28,6 @@ All load(const std::string& text) {
   reader.finish();
   return all;
 }
-
-}  // namespace
 
 TEST(FilterOptions, EveryFieldIsReadFromItsKey) {
   const All all = load(
@@ -70,10 +67,5 @@ TEST(FilterOptions, ReadsAdaptiveSampling) {
   EXPECT_EQ(all.filter.kld.maxParticles, 3000);
 }
 
-TEST(FilterOptions, RefusesAStartThatIsNoPlace) {
-  StartOptions start;
-  start.pose = Pose2D{0, NAN, 0};
-  EXPECT_THROW(checkOptions(start), Error);
-}
-
+}  // namespace
 }  // namespace polemcl::test_filter_options

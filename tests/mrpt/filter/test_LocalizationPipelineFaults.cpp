@@ -13,9 +13,6 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_localization_pipeline_faults {
-
-using namespace polemcl;
-
 namespace {
 
 class PoleLocalizationFaults : public testing::Test {
@@ -73,8 +70,6 @@ class PoleLocalizationFaults : public testing::Test {
   std::vector<PoleScan> frames;
   std::vector<Pose2D> truth;
 };
-
-}  // namespace
 
 TEST_F(PoleLocalizationFaults, AStuckOdometryIsDegradedAndThePoseStaysRight) {
   drive(210);
@@ -379,7 +374,7 @@ TEST_F(PoleLocalizationFaults, AStartFarFromAllPolesIsRefused) {
   StartOptions start;
   start.pose = Pose2D{9000, 0, 0};
   start.radius = 100;
-  EXPECT_THROW(localization.start(start), Error);
+  EXPECT_REFUSED(localization.start(start), "from the nearest pole");
   start.radius = 9000;  // reaches the poles
   localization.start(start);
 }
@@ -457,4 +452,5 @@ TEST_F(PoleLocalizationFaults, AScanWithoutPolesAtTheStartIsNoFirstScan) {
   EXPECT_LT(update.health.spread, 0.1);
 }
 
+}  // namespace
 }  // namespace polemcl::test_localization_pipeline_faults

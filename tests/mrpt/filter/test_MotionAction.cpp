@@ -12,7 +12,6 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_motion_action {
-
 namespace {
 
 PoseWithCovariance usual() {
@@ -35,12 +34,6 @@ std::string refusal(const std::function<void(PoseWithCovariance&)>& change) {
   change(motion);
   return tests::messageOf([&] { makeMotionAction(motion, {}); });
 }
-
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-}  // namespace
 
 TEST(MotionAction, CarriesMeanAndCovarianceAlsoThroughAFile) {
   const auto action = makeMotionAction(usual(), extra(0.1, 0.02));
@@ -90,21 +83,21 @@ TEST(MotionAction, SamplesOfSingularCovariancesAreFinite) {
 TEST(MotionAction, RefusesWhatIsNotFinite) {
   const double bad[] = {NAN, INFINITY, -INFINITY};
   for (double value : bad) {
-    EXPECT_TRUE(holds(refusal([&](auto& m) { m.mean.x = value; }), "not finite"));
-    EXPECT_TRUE(holds(refusal([&](auto& m) { m.mean.y = value; }), "not finite"));
-    EXPECT_TRUE(holds(refusal([&](auto& m) { m.mean.yaw = value; }), "not finite"));
-    EXPECT_TRUE(holds(refusal([&](auto& m) { m.covariance(1, 2) = value; }), "not finite"));
+    EXPECT_HAS(refusal([&](auto& m) { m.mean.x = value; }), "not finite");
+    EXPECT_HAS(refusal([&](auto& m) { m.mean.y = value; }), "not finite");
+    EXPECT_HAS(refusal([&](auto& m) { m.mean.yaw = value; }), "not finite");
+    EXPECT_HAS(refusal([&](auto& m) { m.covariance(1, 2) = value; }), "not finite");
   }
 }
 
 TEST(MotionAction, RefusesBadInput) {
-  EXPECT_TRUE(holds(refusal([](auto& m) { m.mean.x = 8000, m.mean.y = -8000; }), "11313.7 m long"));
+  EXPECT_HAS(refusal([](auto& m) { m.mean.x = 8000, m.mean.y = -8000; }), "11313.7 m long");
   EXPECT_EQ(refusal([](auto& m) { m.mean.x = 9999; }), "no error");
-  EXPECT_TRUE(holds(refusal([](auto& m) { m.covariance(0, 1) += 1e-6; }), "not symmetric"));
-  EXPECT_TRUE(holds(refusal([](auto& m) { m.covariance(1, 1) = -0.02; }), "negative eigenvalue"));
+  EXPECT_HAS(refusal([](auto& m) { m.covariance(0, 1) += 1e-6; }), "not symmetric");
+  EXPECT_HAS(refusal([](auto& m) { m.covariance(1, 1) = -0.02; }), "negative eigenvalue");
   // Positive variances, but a correlation greater than one.
-  EXPECT_TRUE(holds(refusal([](auto& m) { m.covariance(0, 1) = m.covariance(1, 0) = 0.03; }),
-                    "negative eigenvalue"));
+  EXPECT_HAS(refusal([](auto& m) { m.covariance(0, 1) = m.covariance(1, 0) = 0.03; }),
+             "negative eigenvalue");
 }
 
 TEST(MotionAction, RefusesAHugeCovariance) {
@@ -116,9 +109,10 @@ TEST(MotionAction, RefusesAHugeCovariance) {
   };
   EXPECT_EQ(refusal(sigma(0, 9.99)), "no error");
   EXPECT_EQ(refusal(sigma(2, 0.99)), "no error");
-  EXPECT_TRUE(holds(refusal(sigma(0, 10.01)), "too uncertain"));
-  EXPECT_TRUE(holds(refusal(sigma(1, 10.01)), "too uncertain"));
-  EXPECT_TRUE(holds(refusal(sigma(2, 1.01)), "too uncertain"));
+  EXPECT_HAS(refusal(sigma(0, 10.01)), "too uncertain");
+  EXPECT_HAS(refusal(sigma(1, 10.01)), "too uncertain");
+  EXPECT_HAS(refusal(sigma(2, 1.01)), "too uncertain");
 }
 
+}  // namespace
 }  // namespace polemcl::test_motion_action

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "mrpt/filter/PoleParticleFilter.h"
 #include "support/FilterSamples.h"
 #include "support/Refusal.h"
 
 namespace polemcl::test_pole_particle_filter {
+namespace {
 
 using tests::at;
 using tests::degree;
@@ -20,8 +20,6 @@ using tests::PoleStreet;
 using tests::smallMap;
 using tests::still;
 using tests::StreetOptions;
-
-namespace {
 
 struct Errors {
   double position = 0, heading = 0;  ///< means, m and degrees
@@ -44,8 +42,6 @@ Errors drive(PoleParticleFilter& localizer, const PoleStreet& street,
   }
   return errors;
 }
-
-}  // namespace
 
 TEST(PoleParticleFilter, FollowsAStreet) {
   for (std::uint32_t seed : {1, 2, 3}) {
@@ -394,4 +390,5 @@ TEST(PoleParticleFilter, RefusesBadFramesAndStaysAsItWas) {
   EXPECT_NO_THROW(localizer.step(emptyFrame(6)));
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_particle_filter

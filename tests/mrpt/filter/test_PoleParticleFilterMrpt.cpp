@@ -4,19 +4,17 @@
 #include <mrpt/slam/CMonteCarloLocalization2D.h>
 
 #include <cmath>
-#include <set>
 #include <thread>
 
 #include "mrpt/filter/PoleParticleFilter.h"
 #include "support/PoleStreet.h"
 
 namespace polemcl::test_pole_particle_filter_mrpt {
+namespace {
 
 using mrpt::random::getRandomGenerator;
 using tests::makeStreet;
 using tests::PoleStreet;
-
-namespace {
 
 FilterOptions withoutJitter() {
   FilterOptions options;
@@ -80,8 +78,6 @@ std::vector<double> driveOnce(const PoleStreet& street, std::uint32_t seed, int 
   }
   return result;
 }
-
-}  // namespace
 
 TEST(PoleLocalizerMrpt, WeightsSurviveResamplingOfMrpt) {
   mrpt::slam::CMonteCarloLocalization2D stock(100);
@@ -323,4 +319,5 @@ TEST(PoleLocalizerMrpt, TemperingKeepsThePosterior) {
   EXPECT_NEAR(tempered.mean.y, atOnce.mean.y, 0.1 * sigma);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_particle_filter_mrpt

@@ -1,7 +1,6 @@
 // Start of the filter: discs around a pose, and mixtures of places.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "mrpt/filter/PoleParticleFilter.h"

@@ -1,5 +1,4 @@
-/// \file test_LidarPackets.cpp
-/// \brief Packets of real LiDARs of Ouster and Hesai, and their descriptions, right and wrong.
+// Packets of real LiDARs of Ouster and Hesai, and their descriptions, right and wrong.
 
 #include <gtest/gtest.h>
 
@@ -13,10 +12,9 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_lidar_packets {
+namespace {
 
 using namespace testing_apps;
-
-namespace {
 
 std::string captureOf(const std::string& name) {
   return std::string(POLEMCL_SOURCE_DIR) + "/tests/mrpt/live/captures/" + name;
@@ -34,8 +32,6 @@ LidarPoints pointsOf(const LidarPackets& packets, const std::string& packet) {
     if (packets.phase(packet, i)) packets.append(packet, i, points);
   return points;
 }
-
-}  // namespace
 
 /// Numbers of returns and sums of ranges by share/experiments/lidar_packets.py, whose range images
 /// of whole captures have the checksums that Ouster states for four of these LiDARs.
@@ -240,4 +236,5 @@ TEST_F(OusterPacketsTest, RefusesOtherMetadata) {
   expect(with("15.8", "1500"), "below 1 m");
 }
 
+}  // namespace
 }  // namespace polemcl::test_lidar_packets

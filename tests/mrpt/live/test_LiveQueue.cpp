@@ -1,5 +1,4 @@
-/// \file test_LiveQueue.cpp
-/// \brief Order, odometry and overload of scans from sensors; times are numbers here.
+// Order, odometry and overload of scans from sensors; times are numbers here.
 
 #include <gtest/gtest.h>
 
@@ -13,10 +12,9 @@
 #include "support/SequenceFiles.h"
 
 namespace polemcl::test_live_queue {
+namespace {
 
 using namespace tests::sequence;
-
-namespace {
 
 CObservation::Ptr scan(double time, const std::string& label = "lidar") {
   auto observation = std::make_shared<CObservationPoles>(poles(time));
@@ -47,8 +45,6 @@ LiveQueueOptions patient() {
   options.odometryWait = 1e6;
   return options;
 }
-
-}  // namespace
 
 TEST(LiveQueue, GivesScansInTheOrderOfTheirTimesAfterTheOdometry) {
   LiveQueue queue;
@@ -433,4 +429,5 @@ TEST(LiveQueue, SaysThatThereIsNoOdometry) {
                  "sensors.ini: no odometry came with the first 50 scans", "CUdpOdometry");
 }
 
+}  // namespace
 }  // namespace polemcl::test_live_queue

@@ -1,15 +1,10 @@
-/// \file test_LiveSensors.cpp
-/// \brief INI files of sensors, right and wrong; MRPT's drivers are those of the installed library.
+// INI files of sensors, right and wrong; MRPT's drivers are those of the installed library.
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
-#include <algorithm>
-#include <cstring>
-
 #include <polemcl/core/common/Types.h>
-#include "mrpt/rawlog/RawlogReader.h"
 #include "support/LiveSensorsTest.h"
 
 namespace polemcl::test_live_sensors {

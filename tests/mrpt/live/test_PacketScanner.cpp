@@ -1,5 +1,4 @@
-/// \file test_PacketScanner.cpp
-/// \brief Packets of an Ouster and a Hesai on the loopback and in PCAP files become turns.
+// Packets of an Ouster and a Hesai on the loopback and in PCAP files become turns.
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMap.h>
@@ -13,11 +12,10 @@
 #include "support/OusterTurns.h"
 
 namespace polemcl::test_packet_scanner {
+namespace {
 
 using namespace testing_apps;
 using mrpt::obs::CObservationPointCloud;
-
-namespace {
 
 constexpr std::uint64_t kBoot = 5'000'000'000;  // ns
 
@@ -112,8 +110,6 @@ std::string fragmented(const std::vector<std::string>& packets, int port, int li
 }
 
 const std::string kEthernet = std::string(12, '\0') + std::string("\x08\0", 2);
-
-}  // namespace
 
 TEST_F(OusterScannerTest, TurnsShowThePolesOfTheStreet) {
   for (const char* profile : {"RNG19_RFL8_SIG16_NIR16", "LEGACY"}) {
@@ -406,4 +402,5 @@ TEST_F(OusterScannerTest, RefusesWhatCannotBe) {
   EXPECT_HAS(failure(cut), "drive.pcap: is damaged: truncated");
 }
 
+}  // namespace
 }  // namespace polemcl::test_packet_scanner

@@ -1,12 +1,10 @@
-/// \file test_VelodyneReceiver.cpp
-/// \brief Packets of Velodynes on the loopback and in PCAP files become turns.
+// Packets of Velodynes on the loopback and in PCAP files become turns.
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
 #include <cstdio>
 #include <cstring>
-#include <functional>
 #include <numeric>
 #include <tuple>
 
@@ -15,11 +13,10 @@
 #include "support/VelodynePackets.h"
 
 namespace polemcl::test_velodyne_receiver {
+namespace {
 
 using namespace testing_apps;
 using mrpt::obs::CObservationVelodyneScan;
-
-namespace {
 
 using Packets = std::vector<std::string>;
 
@@ -75,8 +72,6 @@ void expectSamePackets(const CObservationVelodyneScan& a, const CObservationVelo
                         a.scan_packets.size() * sizeof a.scan_packets[0]),
             0);
 }
-
-}  // namespace
 
 /// Turns that MRPT recorded, the first one twice.
 TEST_F(VelodyneReceiverTest, PacketsOfARealVlp16BecomeTheRecordedScans) {
@@ -288,4 +283,5 @@ TEST_F(VelodyneReceiverTest, RefusesWhatCannotBe) {
   expectError(velodyne("pcap_output = drive\n"), {"pcap_output: ", "tcpdump -w"});
 }
 
+}  // namespace
 }  // namespace polemcl::test_velodyne_receiver

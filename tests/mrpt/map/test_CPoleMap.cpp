@@ -324,7 +324,7 @@ TEST(CPoleMap, RefusesNewerVersions) {
 }
 
 TEST(CPoleMap, KeepsItsOwnFile) {
-  const samples::Folder folder("CPoleMap");
+  const testing_apps::TempFolder folder;
   const CPoleMap map = sampleMap();
   map.saveToPoleMapFile(folder / "m.polemap");
   CPoleMap read;
@@ -336,7 +336,7 @@ TEST(CPoleMap, KeepsItsOwnFile) {
 }
 
 TEST(CPoleMap, SavesRepresentations) {
-  const samples::Folder folder("CPoleMapFiles");
+  const testing_apps::TempFolder folder;
   sampleMap().saveMetricMapRepresentationToFile(folder / "m");
   EXPECT_EQ(io::readPoleMap(folder / "m.polemap").poles.size(), 3u);
   EXPECT_EQ(io::readPolePositions(folder / "m.csv").size(), 3u);
@@ -383,10 +383,10 @@ TEST(CPoleMap, IsCreatedFromIni) {
 }
 
 TEST(CPoleMap, LoadsItsFileAtCreation) {
-  const samples::Folder folder("CPoleMapIni");
+  const testing_apps::TempFolder folder;
   sampleMap().saveToPoleMapFile(folder / "m.polemap");
-  const auto maps =
-      fromIni(kOne + "[MetricMap_poleMap_00_creationOpts]\nmap_file = " + (folder / "m.polemap"));
+  const auto maps = fromIni(
+      kOne + "[MetricMap_poleMap_00_creationOpts]\nmap_file = " + (folder / "m.polemap").string());
   expectEqual(*maps->mapByClass<CPoleMap>(), sampleMap());
 }
 

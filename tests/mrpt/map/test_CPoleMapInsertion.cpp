@@ -8,7 +8,6 @@
 
 namespace polemcl::test_cpole_map_insertion {
 namespace {
-
 using mrpt::poses::CPose3D;
 
 /// Two poles, at (2, 1) and (6, 0) of the robot.
@@ -17,8 +16,6 @@ CObservationPoles scanOfTwo() {
   scan.poles = {samples::pole(2, 1), samples::pole(6, 0)};
   return scan;
 }
-
-}  // namespace
 
 // Robot at (100, 50) looking left, sensor at (1, 2) rotated left. A point 5 m in front of the
 // sensor is 7 m to the left of the robot and 1 m in front of it, at (100 - 7, 50 + 1).
@@ -83,4 +80,5 @@ TEST(CPoleMapInsertion, InsertsOnlyWhatIsSureEnough) {
   EXPECT_EQ(map.poles().size(), 2u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_cpole_map_insertion

@@ -14,7 +14,6 @@
 
 namespace polemcl::test_cpole_map_matching {
 namespace {
-
 using mrpt::maps::TMatchingExtraResults;
 using mrpt::maps::TMatchingParams;
 using mrpt::poses::CPose2D;
@@ -93,8 +92,6 @@ std::string refusal(const CPoleMap& map, const mrpt::maps::CMetricMap* other,
   return tests::messageOf(
       [&] { map.determineMatching2D(other, CPose2D(), pairs, params, results); });
 }
-
-}  // namespace
 
 TEST(CPoleMapMatching, PairsAreThoseOfBruteForce) {
   const CPoleMap map = randomMap(1, 80), other = randomMap(2, 60);
@@ -198,4 +195,5 @@ TEST(CPoleMapMatching, RefusesOtherMapsAndParameters) {
   EXPECT_HAS(refusal(map, &map, params), "onlyUniqueRobust");
 }
 
+}  // namespace
 }  // namespace polemcl::test_cpole_map_matching

@@ -30,7 +30,7 @@ constexpr int scans = 20;
 
 /// A street of poles with a drive along its middle, one scan per metre.
 struct Street {
-  samples::Folder folder{"Plugin"};
+  testing_apps::TempFolder folder;
   Street() {
     std::vector<MapPole> poles;
     for (int i = 0; i < 8; ++i) poles.push_back(tests::mapPoleAt(5 * i, i % 2 ? 4 : -4));
@@ -71,7 +71,8 @@ struct Street {
 
   /// Output of a command, both streams; run in the folder of the street.
   std::string run(const std::string& command) const {
-    const std::string line = "cd '" + (folder / "") + "' && " + command + " </dev/null 2>&1";
+    const std::string line =
+        "cd '" + folder.path().string() + "' && " + command + " </dev/null 2>&1";
     FILE* pipe = popen(line.c_str(), "r");
     std::string text;
     char buffer[4096];

@@ -119,7 +119,7 @@ TEST(CObservationPoles, MovesPolesToTheRobotFrame) {
   EXPECT_NEAR(poles_robot[1].y, -1, 1e-12);
   EXPECT_NEAR(poles_robot[0].covariance(0, 0), 0.09, 1e-12);
   EXPECT_NEAR(poles_robot[0].covariance(0, 1), -0.01, 1e-12);
-  EXPECT_EQ(poles_robot[0].top, 3.5);
+  EXPECT_EQ(poles_robot[0].top, 4.5);
 }
 
 /// MRPT computes the angles of a pose when they are asked for, in const functions as well.

@@ -5,7 +5,6 @@
 #include <mrpt/obs/CObservationRotatingScan.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <numeric>
@@ -32,7 +31,7 @@ void writeKitti(const std::string& path, const TestCloud& cloud) {
 
 TEST(ObservationPoints, ReadsExternalKittiFiles) {
   using Format = CObservationPointCloud::ExternalStorageFormat;
-  const Folder folder("ObservationPoleExtractor");
+  const testing_apps::TempFolder folder;
   const auto options = hdl32(1.5);
   TestCloud cloud = plainCloud(options);
   const auto expected = corePoles(options, cloud.view());
@@ -57,7 +56,7 @@ TEST(ObservationPoints, ReadsExternalKittiFiles) {
 
 TEST(ObservationPoints, LoadsAndUnloadsOtherExternalFiles) {
   using Format = CObservationPointCloud::ExternalStorageFormat;
-  const Folder folder("PoleExtractionGz");
+  const testing_apps::TempFolder folder;
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
   {
@@ -354,11 +353,11 @@ TEST(ObservationPoints, UnprojectsDepthImagesOnACopy) {
 }
 
 TEST(ObservationPoints, RealKittiScan) {
-  const char* data = std::getenv("POLEMCL_DATA");
-  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  POLEMCL_NEEDS_DATA();
   CObservationPointCloud observation;
-  observation.setAsExternalStorage(std::string(data) + "/kitti_raw_0005/velodyne/0000000000.bin",
-                                   CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+  observation.setAsExternalStorage(
+      testing_apps::dataFolder().string() + "/kitti_raw_0005/velodyne/0000000000.bin",
+      CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
   ObservationPoleExtractor extraction(ObservationPoleExtractorOptions{});
   const auto scan = extraction.process(observation);
   EXPECT_GE(scan->poles.size(), 8u);

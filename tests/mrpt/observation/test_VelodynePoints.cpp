@@ -1,10 +1,8 @@
-/// \file test_VelodynePoints.cpp
-/// \brief Points of Velodyne packets, against MRPT where it reads them, and against the simulated
-/// street.
+// Points of Velodyne packets, against MRPT where it reads them, and against the simulated
+// street.
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -16,11 +14,10 @@
 #include "support/VelodynePackets.h"
 
 namespace polemcl::test_velodyne_points {
+namespace {
 
 using testing_apps::appendBytes;
 using Scan = mrpt::obs::CObservationVelodyneScan;
-
-namespace {
 
 /// Not every MRPT has that of an HDL-64E. No two lasers are alike.
 mrpt::obs::VelodyneCalibration hdl64() {
@@ -71,8 +68,6 @@ std::string randomPacket(std::mt19937& random, int returns, bool isDual) {
   appendBytes(bytes, std::uint32_t{0});
   return bytes + (isDual ? "\x39\x22" : "\x37\x22");
 }
-
-}  // namespace
 
 TEST(VelodynePoints, TheirPacketsTellWhenTheyAreMeasured) {
   std::mt19937 random(3);
@@ -204,4 +199,5 @@ TEST(VelodynePoints, NeedACalibration) {
   EXPECT_REFUSED(read(scan), "a calibration of 0 lasers; allowed are 16, 32 and 64");
 }
 
+}  // namespace
 }  // namespace polemcl::test_velodyne_points

@@ -1,6 +1,5 @@
-/// \file test_VisibilityRangeFrames.cpp
-/// \brief Visibility ranges converted from the LiDAR frame to the robot frame: mountings rotate and
-/// shift them.
+// Visibility ranges converted from the LiDAR frame to the robot frame: mountings rotate and
+// shift them.
 
 #include <algorithm>
 
@@ -8,7 +7,6 @@
 
 namespace polemcl::test_visibility_range_frames {
 namespace {
-
 using mrpt::poses::CPose3D;
 using namespace samples;
 
@@ -18,8 +16,6 @@ std::size_t differing(const std::vector<float>& a, const std::vector<float>& b, 
   for (std::size_t i = 0; i < a.size(); ++i) count += std::abs(a[i] - b[i]) > most;
   return count;
 }
-
-}  // namespace
 
 TEST(VisibilityRangeFrames, LevelCloudsKeepThoseOfTheExtractor) {
   const auto options = hdl32(1.5);
@@ -74,4 +70,5 @@ TEST(VisibilityRangeFrames, RawlogsKeepThem) {
   EXPECT_EQ(read->visibilityRange, scan->visibilityRange);
 }
 
+}  // namespace
 }  // namespace polemcl::test_visibility_range_frames

@@ -1,5 +1,4 @@
-/// \file test_ForgedLengthsInRawlogs.cpp
-/// \brief False lengths and counts in archives must give an error and must not allocate memory.
+// False lengths and counts in archives must give an error and must not allocate memory.
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
@@ -12,7 +11,6 @@
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <zlib.h>
 
-#include <cstring>
 #include <fstream>
 
 #include <polemcl/mrpt/map/CPoleMap.h>
@@ -59,7 +57,7 @@ std::string refusal(const std::string& bytes) {
 }
 
 /// Error message for a rawlog of these bytes.
-std::string rawlogRefusal(const samples::Folder& folder, const std::string& bytes,
+std::string rawlogRefusal(const testing_apps::TempFolder& folder, const std::string& bytes,
                           bool compressed = false) {
   const std::string path = folder / "s.rawlog";
   const gzFile file = gzopen(path.c_str(), compressed ? "wb" : "wbT");
@@ -161,7 +159,7 @@ TEST(ForgedLengths, OfAMap) {
 }
 
 TEST(ForgedLengths, InARawlogOfPoles) {
-  const samples::Folder folder("ForgedLengths");
+  const testing_apps::TempFolder folder;
   mrpt::obs::CSensoryFrame frame;
   frame.insert(std::make_shared<CObservationPoles>(scanOf(10)));
   const std::string good = bytesOf(frame);
@@ -177,7 +175,7 @@ TEST(ForgedLengths, InARawlogOfPoles) {
 
 // MRPT allocates memory for the points before it reads them: the reader must check first.
 TEST(ForgedLengths, InARawlogOfScans) {
-  const samples::Folder folder("ForgedLengths");
+  const testing_apps::TempFolder folder;
   auto cloud = mrpt::obs::CObservationPointCloud::Create();
   auto points = mrpt::maps::CPointsMapXYZI::Create();
   points->resize(200);
@@ -202,7 +200,7 @@ std::string header(const std::string& name) {
 
 // MRPT follows the pointers of a collection without a look at them, and crashes.
 TEST(ForgedLengths, ElementsOfCollectionsThatAreNullOrForeign) {
-  const samples::Folder folder("ForgedLengths");
+  const testing_apps::TempFolder folder;
   const std::string null = header("nullptr") + "\x88", end = "\x88", zero(1, '\0');
   const std::string pose = bytesOf(mrpt::poses::CPose2D());
   const std::string actions = header("mrpt::obs::CActionCollection") + zero + number(1);
@@ -223,7 +221,7 @@ TEST(ForgedLengths, ElementsOfCollectionsThatAreNullOrForeign) {
 
 // MRPT follows the pointer to the distribution, too.
 TEST(ForgedLengths, MovementsWithoutADistribution) {
-  const samples::Folder folder("ForgedLengths");
+  const testing_apps::TempFolder folder;
   const std::string name = header("mrpt::obs::CActionRobotMovement2D"), method = number(1);
   const std::string actions =
       header("mrpt::obs::CActionCollection") + std::string(1, '\0') + number(1);
@@ -235,7 +233,7 @@ TEST(ForgedLengths, MovementsWithoutADistribution) {
 }
 
 TEST(ForgedLengths, MovementsAreReadAsTheyWereWritten) {
-  const samples::Folder folder("ForgedLengths");
+  const testing_apps::TempFolder folder;
   mrpt::obs::CActionRobotMovement2D movement;
   mrpt::poses::CPosePDFGaussian distribution;
   distribution.mean = {1, 2, 3};
@@ -261,7 +259,7 @@ TEST(ForgedLengths, MovementsAreReadAsTheyWereWritten) {
 }
 
 TEST(ForgedLengths, CountsOfCollections) {
-  const samples::Folder folder("ForgedLengths");
+  const testing_apps::TempFolder folder;
   for (const char* name : {"mrpt::obs::CActionCollection", "mrpt::obs::CSensoryFrame"}) {
     const std::string version = name[12] == 'A' ? std::string(1, '\0') : "\2";
     EXPECT_HAS(rawlogRefusal(folder, header(name) + version + number(3'000'000'000)),
@@ -271,7 +269,7 @@ TEST(ForgedLengths, CountsOfCollections) {
 
 // Frames of MRPT before 0.5.5 and of each version since hold the same observations.
 TEST(ForgedLengths, OldCollectionsAreRead) {
-  const samples::Folder folder("ForgedLengths");
+  const testing_apps::TempFolder folder;
   mrpt::obs::CObservationOdometry odometry;
   odometry.timestamp = mrpt::Clock::fromDouble(5);
   const std::string element = bytesOf(odometry);

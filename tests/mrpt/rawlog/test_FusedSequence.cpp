@@ -1,5 +1,4 @@
-/// \file test_FusedSequence.cpp
-/// \brief Rawlogs with the scans of several LiDARs.
+// Rawlogs with the scans of several LiDARs.
 
 #include <gtest/gtest.h>
 

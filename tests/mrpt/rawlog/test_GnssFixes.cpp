@@ -44,7 +44,7 @@ struct GnssFixesTest : testing::Test {
     for (const auto& observation : observations) bytes += samples::bytesOf(*observation);
     return read(bytes);
   }
-  const samples::Folder folder{"GnssFixes"};
+  const testing_apps::TempFolder folder;
   const std::string path = folder / "s.rawlog";
 };
 

@@ -3,10 +3,8 @@
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
-#include <cmath>
 #include <cstring>
 
-#include "core/common/Binder.h"
 #include "mrpt/rawlog/MotionOptions.h"
 #include "mrpt/rawlog/ScanSource.h"
 

@@ -4,15 +4,12 @@
 
 namespace polemcl::test_odometry_track {
 namespace {
-
 /// Straight on at 3 m/s, ten readings a second.
 OdometryTrack driven(double seconds) {
   OdometryTrack track;
   for (int i = 0; i <= 10 * seconds; ++i) track.add(0.1 * i, {0.3 * i, 0, 0});
   return track;
 }
-
-}  // namespace
 
 TEST(OdometryTrack, StartedAnewItGoesOn) {
   for (const double gap : {1.0, 3.0, 5.0, 60.0}) {
@@ -48,4 +45,5 @@ TEST(OdometryTrack, TheMotionOverAJumpIsThatOfALongerTime) {
   EXPECT_NEAR(track.at(101)->x, 303, 4);
 }
 
+}  // namespace
 }  // namespace polemcl::test_odometry_track

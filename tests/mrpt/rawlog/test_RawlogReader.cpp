@@ -12,7 +12,6 @@
 #include <zlib.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <fstream>
 #include <new>
 #include <set>
@@ -93,7 +92,7 @@ void writeFile(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<long>(bytes.size()));
 }
 
-std::string gzipped(const std::string& bytes, const samples::Folder& folder) {
+std::string gzipped(const std::string& bytes, const testing_apps::TempFolder& folder) {
   gzFile file = gzopen((folder / "tmp.gz").c_str(), "wb");
   gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
   gzclose(file);
@@ -124,7 +123,7 @@ Reading readAll(const std::string& path, bool allowTruncated = false) {
 
 /// A folder with one rawlog of given bytes.
 struct Bench {
-  samples::Folder folder{"RawlogReader"};
+  testing_apps::TempFolder folder;
   std::string path = folder / "s.rawlog";
   Reading read(const std::string& bytes, bool allowTruncated = false) const {
     writeFile(path, bytes);

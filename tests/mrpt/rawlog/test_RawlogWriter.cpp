@@ -5,16 +5,10 @@
 #include <mrpt/obs/CRawlog.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/serialization/CArchive.h>
-#include <sys/resource.h>
-
-#include <csignal>
-#include <filesystem>
-#include <fstream>
 
 #include "mrpt/rawlog/RawlogReader.h"
 #include "mrpt/rawlog/RawlogWriter.h"
-#include "support/ExpectHas.h"
-#include "support/Refusal.h"
+#include "support/IoFiles.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_rawlog_writer {
@@ -36,7 +30,7 @@ CActionCollection move(CActionRobotMovement2D::TEstimationMethod method) {
 }
 
 TEST(RawlogWriter, TheCommentIsThatOfMrpt) {
-  const samples::Folder folder("RawlogComment");
+  const testing_apps::TempFolder folder;
   RawlogWriter writer(folder / "s.rawlog");
   writer.writeComment("said", 12.5);
   writer.write(samples::observation());
@@ -58,7 +52,7 @@ TEST(RawlogWriter, TheCommentIsThatOfMrpt) {
 }
 
 TEST(RawlogWriter, PairsAndObservationsSurvive) {
-  const samples::Folder folder("RawlogWriter");
+  const testing_apps::TempFolder folder;
   RawlogWriter writer(folder / "s.rawlog");
   writer.write(move(CActionRobotMovement2D::emScan2DMatching),
                std::make_shared<CObservationPoles>(samples::observation()));
@@ -91,7 +85,7 @@ TEST(RawlogWriter, PairsAndObservationsSurvive) {
 
 // The pitfall: a motion written as emOdometry is read back with another mean and covariance.
 TEST(RawlogWriter, RefusesMovementsThatWouldBeLost) {
-  const samples::Folder folder("RawlogWriterLost");
+  const testing_apps::TempFolder folder;
   CActionCollection odometry = move(CActionRobotMovement2D::emOdometry);
   const auto read =
       std::dynamic_pointer_cast<CActionCollection>(samples::objectFrom(samples::bytesOf(odometry)));
@@ -103,21 +97,20 @@ TEST(RawlogWriter, RefusesMovementsThatWouldBeLost) {
 }
 
 TEST(RawlogWriter, LeavesNothingUnlessCommitted) {
-  const samples::Folder folder("RawlogWriterNothing");
+  const testing_apps::TempFolder folder;
   { RawlogWriter(folder / "s.rawlog").write(samples::observation()); }
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
 }
 
 TEST(RawlogWriter, SameBytesEachTime) {
-  const samples::Folder folder("RawlogWriterBytes");
+  const testing_apps::TempFolder folder;
   std::string first;
   for (const char* name : {"a", "b"}) {
     RawlogWriter writer(folder / name);
     writer.write(move(CActionRobotMovement2D::emScan2DMatching),
                  std::make_shared<CObservationPoles>(samples::observation()));
     writer.commit();
-    std::ifstream in(folder / name, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    const std::string bytes = testing_apps::readText(folder / name);
     if (first.empty()) first = bytes;
     EXPECT_EQ(bytes, first);
   }
@@ -129,20 +122,14 @@ TEST(RawlogWriter, RefusesAFolderThatIsNotThere) {
 
 // A limit on file sizes simulates a full disk: writes fail in the middle of the file.
 TEST(RawlogWriter, ReportsAFullDisk) {
-  const samples::Folder folder("RawlogWriterFull");
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit small{20000, before.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
+  const testing_apps::TempFolder folder;
   int written = 0;
   const std::string error = tests::messageOf([&] {
+    const io::test::FileSizeLimit limit(20000);
     RawlogWriter writer(folder / "s.rawlog");
     for (; written < 1000; ++written) writer.write(samples::observation());
     writer.commit();
   });
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
   EXPECT_HAS(error, "s.rawlog");
   EXPECT_LT(written, 1000);  // noticed before the end
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));

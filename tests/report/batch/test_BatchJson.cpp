@@ -9,7 +9,6 @@
 
 namespace polemcl::report::test_batch_json {
 namespace {
-
 using testing_apps::readText;
 using testing_apps::TempFolder;
 
@@ -18,8 +17,6 @@ nlohmann::json jsonOf(const BatchResults& batch) {
   writeResultsJson(folder / "a.json", batch);
   return nlohmann::json::parse(readText(folder / "a.json"));
 }
-
-}  // namespace
 
 TEST(BatchJson, HoldsAllThatTheBatchTells) {
   const BatchResults batch = smallBatch();
@@ -84,4 +81,5 @@ TEST(BatchJson, IsUtf8) {
   EXPECT_EQ(jsonOf(batch)["failures"][0]["reason"], "caf\xef\xbf\xbd.bin: gone");
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_batch_json

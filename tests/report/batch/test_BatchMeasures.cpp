@@ -9,7 +9,6 @@
 
 namespace polemcl::report::test_batch_measures {
 namespace {
-
 /// A drive along y, 1 m/s; the estimates are off by (dx, dy) in turn.
 struct NorthDrive {
   std::vector<StampedPose2D> truth, estimate;
@@ -31,8 +30,6 @@ double farthestFrom(const std::vector<Eigen::Vector2d>& line, const Eigen::Vecto
       nearest = std::min(nearest, (line[i] + k / 1000.0 * (line[i + 1] - line[i]) - point).norm());
   return nearest;
 }
-
-}  // namespace
 
 TEST(BatchMeasures, FiguresOfADriveNorth) {
   const NorthDrive drive;
@@ -162,4 +159,5 @@ TEST(BatchMeasures, NeverMoreBinsThanAllowed) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_batch_measures

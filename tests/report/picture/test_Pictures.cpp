@@ -1,7 +1,7 @@
-/// \file test_Pictures.cpp
-/// \brief That the pictures show what they are given, where it is. test_draw.py tests their looks.
+// That the pictures show what they are given, where it is. test_draw.py tests their looks.
 
 #include <gtest/gtest.h>
+#include <mrpt/img/CImage.h>
 
 #include <cmath>
 
@@ -9,15 +9,41 @@
 #include "io/file/Bytes.h"
 #include "report/picture/Pictures.h"
 #include "support/KnownScene.h"
-#include "support/Pixels.h"
 #include "support/Refusal.h"
 #include "support/SampleViews.h"
 
 namespace polemcl::report::test_pictures {
 namespace {
-
 constexpr unsigned orange = 0xd55e00, grey = 0xaab2bd, blue = 0x0072b2, green = 0x009e73,
                    lightBlue = 0x7aa6cf, navy = 0x0b4a86, noReturn = 0xf3f4f6;
+
+/// A PNG read with MRPT's image class, which is independent of the writer.
+class Pixels {
+ public:
+  explicit Pixels(const std::filesystem::path& file) {
+    if (!m_image.loadFromFile(file.string()))
+      throw std::runtime_error("no image: " + file.string());
+  }
+  int width() const { return static_cast<int>(m_image.getWidth()); }
+  int height() const { return static_cast<int>(m_image.getHeight()); }
+  /// 0xRRGGBB.
+  unsigned at(int x, int y) const {
+    const auto column = static_cast<unsigned>(x), row = static_cast<unsigned>(y);
+    const auto channel = [&](int c) {
+      return static_cast<unsigned>(m_image.at<std::uint8_t>(column, row, static_cast<int8_t>(c)));
+    };
+    return channel(2) << 16 | channel(1) << 8 | channel(0);  // stored as BGR
+  }
+  std::size_t count(unsigned color) const {
+    std::size_t pixels = 0;
+    for (int y = 0; y < height(); ++y)
+      for (int x = 0; x < width(); ++x) pixels += at(x, y) == color;
+    return pixels;
+  }
+
+ private:
+  mrpt::img::CImage m_image;
+};
 
 /// Left, upper, right and lower end of a part of a picture, px.
 struct Part {
@@ -44,7 +70,7 @@ class Pictures : public ::testing::Test {
     drawMapPng(view, file);
     return Pixels(file);
   }
-  TestFolder folder;
+  testing_apps::TempFolder folder;
   std::filesystem::path file = folder / "a.png";
 };
 
@@ -53,8 +79,6 @@ void addPatch(clouds::PointList& points, double x, double y, double z) {
   for (double u = -0.25; u <= 0.25; u += 0.01)
     for (double v = -0.25; v <= 0.25; v += 0.01) points.add(x + u, y + v, z);
 }
-
-}  // namespace
 
 TEST_F(Pictures, AMapShowsPolesTruthAndEstimateWhereTheyAre) {
   MapView view = smallDrive(1);  // the estimate 1 m to the left of the truth
@@ -206,4 +230,5 @@ TEST_F(Pictures, RefuseWhatCannotBeDrawnAndLeaveNoFile) {
   EXPECT_TRUE(std::filesystem::is_empty(file.parent_path()));
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_pictures

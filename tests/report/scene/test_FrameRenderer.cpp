@@ -4,11 +4,10 @@
 #include "report/scene/FrameRenderer.h"
 #include "report/scene/LiveScene.h"
 #include "support/LiveMoments.h"
-#include "support/SampleViews.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::report::test_frame_renderer {
 namespace {
-
 /// Pixels of a part of the picture that are nearer to this colour than to white or grey.
 int count(const mrpt::img::CImage& image, int x0, int y0, int x1, int y1,
           bool (*wanted)(int, int, int)) {
@@ -31,10 +30,8 @@ bool isPurple(int r, int g, int b) {
   return r > g + 30 && b > g + 50;
 }
 
-}  // namespace
-
 TEST(FrameRenderer, WritesAPictureOfTheSizeWithEverythingInItsColour) {
-  const TestFolder folder;
+  const testing_apps::TempFolder folder;
   FrameRenderer renderer(640, 360);
   LiveScene scene(smallMap(), "drive", FrameRenderer::textScale(360));
   LiveMoment moment = knownMoment();  // ahead, to the right and to the left
@@ -59,7 +56,8 @@ TEST(FrameRenderer, RefusesAFileThatCannotBeWritten) {
   FrameRenderer renderer(160, 160);
   LiveScene scene(smallMap(), "", FrameRenderer::textScale(160));
   scene.show(searchingMoment());
-  EXPECT_THROW(renderer.render(*scene.scene(), TestFolder() / "no/a.png"), Error);
+  EXPECT_THROW(renderer.render(*scene.scene(), testing_apps::TempFolder() / "no/a.png"), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_frame_renderer

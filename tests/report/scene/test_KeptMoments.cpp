@@ -5,7 +5,6 @@
 
 namespace polemcl::report::test_kept_moments {
 namespace {
-
 /// knownMoment(), moved along x by the scan.
 LiveMoment momentAt(std::size_t scan) {
   LiveMoment moment = knownMoment();
@@ -28,8 +27,6 @@ KeptMoments keptUpTo(std::size_t scans) {
   for (std::size_t scan = 0; scan < scans; ++scan) kept.add(momentAt(scan));
   return kept;
 }
-
-}  // namespace
 
 TEST(KeptMoments, GoingBackGivesTheSamePoses) {
   const KeptMoments kept = keptUpTo(5);
@@ -126,4 +123,5 @@ TEST(KeptMoments, OfALongDriveTheLastOnesAreKept) {
   EXPECT_EQ(kept.at(100).elapsed, 100);
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_kept_moments

@@ -11,12 +11,11 @@
 #include "report/scene/LiveObjects.h"
 #include "report/scene/LiveScene.h"
 #include "support/LiveMoments.h"
-#include "support/SampleViews.h"
 #include "support/Scenes.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::report::test_live_scene {
 namespace {
-
 std::string shareOf(const mrpt::opengl::CRenderizable& object) {
   const auto* text = dynamic_cast<const mrpt::opengl::CText*>(&object);
   return text ? text->getString() : "no text";
@@ -26,8 +25,6 @@ std::string bytesOf(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
-
-}  // namespace
 
 TEST(LiveScene, ShowsTheMapAndWhatWasObservedWhereItStands) {
   LiveScene scene(smallMap(), "drive");
@@ -242,7 +239,7 @@ TEST(LiveScene, MapsInUtmKeepTheirCentimetres) {
 }
 
 TEST(LiveScene, TheFileHoldsStockObjectsAndComesBack) {
-  const TestFolder folder;
+  const testing_apps::TempFolder folder;
   LiveScene scene(smallMap(), "drive");
   scene.show(knownMoment());
   polemcl::scene::save(*scene.scene(), folder / "a.3Dscene");
@@ -285,4 +282,5 @@ TEST(LiveMoment, TheWayIsThinnedAndBrokenWhereTheEstimateJumps) {
   EXPECT_EQ(way.points().size(), 16u);
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_live_scene

@@ -13,7 +13,6 @@
 
 namespace polemcl::report::test_map_scene {
 namespace {
-
 MapView movedBy(MapView view, double x, double y) {
   for (MapPole& pole : view.poles) pole.x += x, pole.y += y;
   for (auto* path : {&view.truth, &view.estimate})
@@ -22,7 +21,7 @@ MapView movedBy(MapView view, double x, double y) {
 }
 
 mrpt::opengl::COpenGLScene::Ptr writtenAndRead(const mrpt::opengl::COpenGLScene& scene) {
-  const TestFolder folder;
+  const testing_apps::TempFolder folder;
   scene::save(scene, folder / "a.3Dscene");
   auto loaded = mrpt::opengl::COpenGLScene::Create();
   EXPECT_TRUE(loaded->loadFromFile((folder / "a.3Dscene").string()));
@@ -34,8 +33,6 @@ std::size_t trianglesOf(const mrpt::opengl::COpenGLScene::Ptr& scene, const std:
       std::dynamic_pointer_cast<mrpt::opengl::CSetOfTriangles>(scene->getByName(name));
   return triangles ? triangles->getTrianglesCount() : 0;
 }
-
-}  // namespace
 
 TEST(MapScene, PolesAreUprightCylindersFromBottomToTop) {
   const auto cylinders = cylindersOf(makeMapScene(smallDrive()), "poles");
@@ -160,7 +157,7 @@ TEST(MapScene, WhatIsMissingIsLeftOut) {
 }
 
 TEST(MapScene, TheFileHoldsStockObjectsAndComesBack) {
-  const TestFolder folder;
+  const testing_apps::TempFolder folder;
   const auto file = folder / "a.3Dscene";
   scene::save(*makeMapScene(smallDrive()), file);
   std::ifstream in(file, std::ios::binary);
@@ -179,7 +176,7 @@ TEST(MapScene, RefusesNothingToShowAndValuesThatAreNotFinite) {
 
 TEST(MapScene, RefusesToWriteIntoAMissingFolder) {
   const auto scene = makeMapScene(smallDrive());
-  EXPECT_THROW(scene::save(*scene, TestFolder() / "no/a.3Dscene"), Error);
+  EXPECT_THROW(scene::save(*scene, testing_apps::TempFolder() / "no/a.3Dscene"), Error);
 }
 
 TEST(DiffScene, EachKindInItsGroup) {
@@ -219,4 +216,5 @@ TEST(DiffScene, RefusesNothing) {
   EXPECT_THROW(makeDiffScene({}), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_map_scene

@@ -4,7 +4,6 @@
 
 namespace polemcl::report::test_playback {
 namespace {
-
 constexpr HealthState ok = HealthState::ok, degraded = HealthState::degraded,
                       lost = HealthState::lost;
 
@@ -23,8 +22,6 @@ class AtScan {
   }
   Playback playback{Playback::Source::rawlog};
 };
-
-}  // namespace
 
 TEST(Playback, ARunGoesOnWhenItsNewestScanHasBeenShown) {
   Playback playback(Playback::Source::rawlog);
@@ -212,4 +209,5 @@ TEST(Playback, ForgottenScansAreNotShown) {
   EXPECT_EQ(at.playback.position(), 2u);
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_playback

@@ -4,7 +4,6 @@
 
 namespace polemcl::report::test_player_keys {
 namespace {
-
 using Key = KeyPress::Key;
 
 /// A run of 300 scans, 1 s apart, paused at scan 100; scan 150 is lost.
@@ -22,8 +21,6 @@ class PlayerKeysTest : public testing::Test {
   Playback playback{Playback::Source::rawlog};
   PlayerKeys keys;
 };
-
-}  // namespace
 
 TEST_F(PlayerKeysTest, MoveThePosition) {
   const std::vector<std::pair<Key, std::size_t>> moves{
@@ -84,4 +81,5 @@ TEST_F(PlayerKeysTest, SwitchHelpAndPoints) {
   EXPECT_EQ(playback.position(), 100u);
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_player_keys

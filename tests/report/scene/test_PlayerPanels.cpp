@@ -4,12 +4,12 @@
 #include "report/scene/LiveScene.h"
 #include "report/scene/PlayerKeys.h"
 #include "report/scene/PlayerPanels.h"
+#include "support/ExpectHas.h"
 #include "support/LiveMoments.h"
 #include "support/Scenes.h"
 
 namespace polemcl::report::test_player_panels {
 namespace {
-
 constexpr HealthState ok = HealthState::ok, degraded = HealthState::degraded,
                       lost = HealthState::lost;
 
@@ -34,8 +34,6 @@ int facesOf(const viz::Scene::Ptr& scene, const scene::TColor& color) {
   }
   return count;
 }
-
-}  // namespace
 
 TEST(TimeLine, ReachesToTheEndOfTheRunAndHoldsTheWorstOfEachColumn) {
   Playback playback(Playback::Source::rawlog);
@@ -101,8 +99,7 @@ TEST(PlayerPanels, ShowHealthErrorsAndTimes) {
   EXPECT_EQ(facesOf(live.scene(), scene::truthColor), 2 * 10);  // the marks of 0, 5, ... 45 s
 
   showTimeLine(*live.scene(), makeTimeLine(playback, std::vector<float>(50, 0.3f), 0), "");
-  EXPECT_NE(textOf(live.scene(), "player").find("error of the position; line: 0.3 m"),
-            std::string::npos);
+  EXPECT_HAS(textOf(live.scene(), "player"), "error of the position; line: 0.3 m");
   EXPECT_EQ(facesOf(live.scene(), scene::truthColor), 2 * (10 + 500));  // and the curve
 }
 
@@ -116,4 +113,5 @@ TEST(PlayerPanels, HelpComesAndGoes) {
   EXPECT_EQ(textOf(live.scene(), "help"), "");
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_player_panels

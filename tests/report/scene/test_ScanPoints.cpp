@@ -9,7 +9,6 @@
 
 namespace polemcl::report::test_scan_points {
 namespace {
-
 using Cloud = mrpt::obs::CObservationPointCloud;
 
 Cloud::Ptr cloudOf(const std::string& label, const mrpt::poses::CPose3D& pose) {
@@ -19,8 +18,6 @@ Cloud::Ptr cloudOf(const std::string& label, const mrpt::poses::CPose3D& pose) {
   cloud->pointcloud = mrpt::maps::CSimplePointsMap::Create();
   return cloud;
 }
-
-}  // namespace
 
 TEST(ScanPoints, AreThoseOfAllLidarsInTheRobotFrame) {
   const auto front = cloudOf("front", {1, 0, 2, M_PI / 2, 0, 0}), rear = cloudOf("rear", {});
@@ -49,4 +46,5 @@ TEST(ScanPoints, AreThinned) {
     EXPECT_EQ(points[k].x, static_cast<float>(4 * k + 1)) << k;
 }
 
+}  // namespace
 }  // namespace polemcl::report::test_scan_points

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <polemcl/core/common/Types.h>
 #include "sim/common/SimulationOptions.h"
 #include "sim/lidar/LidarModel.h"
 #include "support/Refusal.h"

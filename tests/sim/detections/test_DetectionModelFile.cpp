@@ -8,11 +8,11 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_detection_model_file {
+namespace {
 
 using namespace polemcl::sim;
 namespace fs = std::filesystem;
 
-namespace {
 using Json = nlohmann::ordered_json;
 const fs::path kModels = fs::path(POLEMCL_SOURCE_DIR) / "share" / "models";
 
@@ -34,8 +34,6 @@ class DetectionModelFile : public testing::Test {
   fs::path file = m_folder / "model.json";
   Json json = Json::parse(testing_apps::readText(kModels / "hdl32e.json"));
 };
-}  // namespace
-
 TEST_F(DetectionModelFile, ReadsWhatIsWritten) {
   json["fitted_on"] = "by hand";
   json["points_per_scan"] = 64283;
@@ -113,4 +111,5 @@ TEST_F(DetectionModelFile, NamesFileKeyAndWhatIsAllowed) {
   EXPECT_REFUSED(readDetectionModel(file), "not JSON");
 }
 
+}  // namespace
 }  // namespace polemcl::test_detection_model_file

@@ -10,11 +10,11 @@
 #include "support/DetectionModels.h"
 
 namespace polemcl::test_detection_sampler {
+namespace {
 
 using namespace polemcl::sim;
 using testing_sim::plainModel;
 
-namespace {
 class DetectionSamplerTest : public testing::Test {
  protected:
   DetectionSamplerTest() {
@@ -50,8 +50,6 @@ class DetectionSamplerTest : public testing::Test {
   std::vector<std::vector<PoleDetection>> scans;
   std::vector<std::vector<Eigen::Vector2d>> truth;
 };
-}  // namespace
-
 TEST_F(DetectionSamplerTest, FindsPolesAsOftenAndAsFarOffAsTheModelSays) {
   sample(plainModel());
   double chances = 0, found = 0, along = 0, across = 0, sum = 0, detections = 0;
@@ -205,7 +203,6 @@ TEST_F(DetectionSamplerTest, VisibilityRangesEndAtHousesInTheFrameOfTheClouds) {
   EXPECT_GT(all, 2 * hidden);
 }
 
-namespace {
 /// Share of detections among all chances to see a pole of a class during a drive.
 template <class Sort>
 double shareSeen(const DetectionModel& model, const SimulationOptions& options, const Sort& isA) {
@@ -235,8 +232,6 @@ double shareSeen(const DetectionModel& model, const SimulationOptions& options, 
   EXPECT_GT(chances, 300);
   return found / chances;
 }
-}  // namespace
-
 TEST_F(DetectionSamplerTest, SnowHidesPolesThatStandInIt) {
   DetectionModel model = plainModel();
   model.season.snow.fill(-4);
@@ -331,4 +326,5 @@ TEST_F(DetectionSamplerTest, BuildingSitesLookLikePolesWhileTheyStand) {
   EXPECT_NEAR(objects, 0.2 * metres, 4 * std::sqrt(2.5 * 0.2 * metres));
 }
 
+}  // namespace
 }  // namespace polemcl::test_detection_sampler

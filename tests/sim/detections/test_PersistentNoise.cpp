@@ -6,10 +6,10 @@
 #include "sim/detections/PersistentNoise.h"
 
 namespace polemcl::test_persistent_noise {
+namespace {
 
 using namespace polemcl::sim;
 
-namespace {
 NoiseSpectrum mixed() {
   NoiseSpectrum spectrum;
   spectrum.always = {0.1, 0.0, 0.2, 0.0, 0.1};
@@ -36,8 +36,6 @@ double counted(const NoiseSpectrum& spectrum, double distance, bool sameDay) {
   EXPECT_NEAR(aa / 40000, 1, 0.03);
   return ab / std::sqrt(aa * bb);
 }
-}  // namespace
-
 TEST(PersistentNoise, WhiteIsWhatIsLeft) {
   EXPECT_NEAR(mixed().white(), 0.2, 1e-12);
   EXPECT_EQ(NoiseSpectrum().white(), 1);
@@ -66,4 +64,5 @@ TEST(PersistentNoise, DependsOnNothingButItsSeedsAndThePlace) {
   EXPECT_NE(persistentNoise(mixed(), {1, 2, 4}, 4.5, -8), first);
 }
 
+}  // namespace
 }  // namespace polemcl::test_persistent_noise

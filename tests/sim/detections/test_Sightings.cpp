@@ -1,16 +1,15 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <map>
 
 #include "sim/detections/Sightings.h"
 #include "sim/world/SightLines.h"
 
 namespace polemcl::test_sightings {
+namespace {
 
 using namespace polemcl::sim;
 
-namespace {
 constexpr double kRange = 40;  // m
 
 /// A drive on a flat street; its clouds have their origin at the optical centre.
@@ -51,8 +50,6 @@ class Sightings : public testing::Test {
   std::vector<std::vector<PoleDetection>> poles =
       std::vector<std::vector<PoleDetection>>(drive.scans());
 };
-}  // namespace
-
 TEST_F(Sightings, OfPolesAreAllInRangeFoundOrNot) {
   std::size_t found = 0, inRange = 0, hidden = 0;
   const SightLines sight(drive.world());
@@ -122,4 +119,5 @@ TEST_F(Sightings, ThreeFalseDetectionsAtAPlaceAreClutterOthersPass) {
     EXPECT_FALSE(sighting.reported);
 }
 
+}  // namespace
 }  // namespace polemcl::test_sightings

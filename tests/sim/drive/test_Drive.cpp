@@ -6,16 +6,14 @@
 #include "sim/drive/Drive.h"
 
 namespace polemcl::test_drive {
+namespace {
 
 using namespace polemcl::sim;
 
-namespace {
 Pose2D planar(const Eigen::Isometry3d& pose) {
   return {pose.translation().x(), pose.translation().y(),
           std::atan2(pose.linear()(1, 0), pose.linear()(0, 0))};
 }
-}  // namespace
-
 TEST(Drive, KeepsSpacingTimeHeightAndUprightness) {
   SimulationOptions options;
   options.height = 1.7;
@@ -97,4 +95,5 @@ TEST(Drive, RefusesAStreetShorterThanTwoScans) {
   EXPECT_THROW(makeDrive(makeWorld(options.world), options), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_drive

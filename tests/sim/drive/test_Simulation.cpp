@@ -12,11 +12,11 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_simulation {
+namespace {
 
 using namespace polemcl::sim;
 namespace fs = std::filesystem;
 
-namespace {
 class Simulation : public testing::Test {
  protected:
   Simulation() {
@@ -33,8 +33,6 @@ class Simulation : public testing::Test {
  private:
   testing_apps::TempFolder m_folder;
 };
-}  // namespace
-
 TEST_F(Simulation, WritesAFolderThatReadsBackAsTheDrive) {
   const fs::path out = folder("out");
   std::vector<std::size_t> steps;
@@ -181,4 +179,5 @@ TEST_F(Simulation, RefusesOptionsBeforeItWritesAnything) {
   EXPECT_TRUE(fs::is_empty(out));
 }
 
+}  // namespace
 }  // namespace polemcl::test_simulation

@@ -3,14 +3,12 @@
 #include <cmath>
 
 #include "core/common/Angles.h"
-#include "core/common/Transform.h"
 #include "sim/drive/WheelOdometry.h"
 
 namespace polemcl::test_wheel_odometry {
+namespace {
 
 using namespace polemcl::sim;
-
-namespace {
 
 /// What 400 m in steps of 0.5 m read, with turns of 0.01 rad each.
 struct Sums {
@@ -24,8 +22,6 @@ struct Sums {
     }
   }
 };
-
-}  // namespace
 
 TEST(WheelOdometry, ScaleYawBiasAndSlipAddUp) {
   const double length = 800 * std::hypot(0.5, 0.01);
@@ -72,4 +68,5 @@ TEST(WheelOdometry, BiasesChangeSlowly) {
   EXPECT_NEAR(quarter, 200 * (1.1 + 0.05 * 2 / M_PI), 0.5) << "mean of half a wave";
 }
 
+}  // namespace
 }  // namespace polemcl::test_wheel_odometry

@@ -6,11 +6,11 @@
 #include "sim/lidar/Intersection.h"
 
 namespace polemcl::test_intersection {
+namespace {
 
 using namespace polemcl::sim;
 using V = Eigen::Vector3f;
 
-namespace {
 /// First range at which `inside` becomes true, by small steps and bisection; infinity if never.
 float march(const LocalRay& ray, const std::function<bool(const V&)>& inside) {
   constexpr float kStep = 0.004f, kEnd = 30;
@@ -54,8 +54,6 @@ void compare(const std::function<ShapeHit(const LocalRay&)>& kernel,
   EXPECT_GT(hits, 150);
   EXPECT_LE(wrong, hits / 100);
 }
-}  // namespace
-
 TEST(Intersection, ByHand) {
   const LocalRay along{V(-5, 0, 1), V(1, 0, 0)};
   EXPECT_NEAR(hitFrustum(along, 0.5f, 0.5f, 2).range, 4.5, 1e-5);
@@ -129,4 +127,5 @@ TEST(Intersection, LeavesFillTheirShareAndAreTheSameFromEverySide) {
   EXPECT_GT(depth / hits, 0.5);
 }
 
+}  // namespace
 }  // namespace polemcl::test_intersection

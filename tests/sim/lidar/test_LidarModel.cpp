@@ -8,18 +8,16 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_lidar_model {
+namespace {
 
 using namespace polemcl::sim;
 
-namespace {
 constexpr double kDegree = M_PI / 180;
 struct Sheet {
   const char* name;
   std::size_t beams;
   double topDeg, bottomDeg;
 };
-}  // namespace
-
 TEST(LidarModel, BeamsAreThoseOfTheDataSheets) {
   for (const Sheet& sheet : {Sheet{"hdl64e", 64, 2, -24.33}, Sheet{"hdl32e", 32, 10.67, -30.67},
                              Sheet{"vlp16", 16, 15, -15}, Sheet{"os1_64", 64, 16.6, -16.6},
@@ -103,4 +101,5 @@ TEST(LidarModel, RefusesAnUnknownNameAndListsTheKnownOnes) {
   for (const std::string& name : lidarNames()) EXPECT_HAS(message, name);
 }
 
+}  // namespace
 }  // namespace polemcl::test_lidar_model

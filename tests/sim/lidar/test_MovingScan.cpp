@@ -9,7 +9,6 @@
 
 namespace polemcl::test_moving_scan {
 namespace {
-
 using namespace sim;
 using V = Eigen::Vector3d;
 
@@ -91,8 +90,6 @@ class MovingScan : public ::testing::Test {
   SensorOptions sensor;
 };
 
-}  // namespace
-
 // The beam turns clockwise: what stands to the right of the way moves with it.
 TEST_F(MovingScan, PolesBesideTheRoadKeepTheirRadiusAndPlace) {
   const auto still = see(0, false), moving = see(kSpeed, false), corrected = see(kSpeed, true);
@@ -107,4 +104,5 @@ TEST_F(MovingScan, PolesBesideTheRoadKeepTheirRadiusAndPlace) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_moving_scan

@@ -5,10 +5,9 @@
 #include "sim/lidar/PulseReturn.h"
 
 namespace polemcl::test_pulse_return {
+namespace {
 
 using namespace polemcl::sim;
-
-namespace {
 
 RealismOptions only(double RealismOptions::*rate, double value) {
   RealismOptions realism;
@@ -51,8 +50,6 @@ Returned onSurface(const RealismOptions& realism, float reflectivity, double bea
   return result;
 }
 
-}  // namespace
-
 TEST(Weather, RainFallsEverywhereSprayBehind) {
   EXPECT_NEAR(shareWithDrop(only(&RealismOptions::rain, 10), 1, 0), 0.02, 0.003);
   const RealismOptions spray = only(&RealismOptions::spray, 0.2);
@@ -89,4 +86,5 @@ TEST(Weather, BlackSurfacesLosePulses) {
   EXPECT_NEAR(onSurface(dark, 0.6f, 0).share, onSurface(none, 0.6f, 0).share, 0.005);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pulse_return

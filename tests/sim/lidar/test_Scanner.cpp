@@ -8,11 +8,11 @@
 #include "sim/lidar/Scanner.h"
 
 namespace polemcl::test_scanner {
+namespace {
 
 using namespace polemcl::sim;
 using V = Eigen::Vector3d;
 
-namespace {
 /// A flat empty place with the given objects; the road runs along x.
 World emptyPlace(std::vector<WorldObject> objects) {
   WorldOptions options;
@@ -40,8 +40,6 @@ std::vector<V> pointsOf(const SimulatedScan& scan, std::uint32_t id,
     if (scan.label[i] == id) points.push_back(pose * V(scan.x[i], scan.y[i], scan.z[i]));
   return points;
 }
-}  // namespace
-
 TEST(Scanner, SameSeedGivesTheSameScan) {
   SimulationOptions options;
   options.world.length = 60;
@@ -216,4 +214,5 @@ TEST(Scanner, MotionShiftsPointsByTheWayOfTheSensorWithinTheTurn) {
   EXPECT_NEAR(meanX(2), 7.9, 0.03) << "fired in the middle of the turn";
 }
 
+}  // namespace
 }  // namespace polemcl::test_scanner

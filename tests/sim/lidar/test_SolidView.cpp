@@ -6,11 +6,11 @@
 #include "sim/world/WorldObject.h"
 
 namespace polemcl::test_solid_view {
+namespace {
 
 using namespace polemcl::sim;
 using V = Eigen::Vector3d;
 
-namespace {
 Solid randomSolid(Random& random) {
   Solid solid;
   solid.shape = static_cast<Shape>(random.below(4));
@@ -36,8 +36,6 @@ Eigen::Isometry3d randomPose(Random& random) {
   pose.translation() = V(random.uniform(-2, 2), random.uniform(-2, 2), 1.5);
   return pose;
 }
-}  // namespace
-
 TEST(SolidView, BoundsHoldEveryHit) {
   Random random(21);
   int hits = 0;
@@ -89,4 +87,5 @@ TEST(SolidView, GlassLetsTheGivenShareThrough) {
   EXPECT_NEAR(stopped, 3000, 150);
 }
 
+}  // namespace
 }  // namespace polemcl::test_solid_view

@@ -7,10 +7,9 @@
 #include "support/Refusal.h"
 
 namespace polemcl::test_detour {
+namespace {
 
 using namespace polemcl::sim;
-
-namespace {
 
 SimulationOptions withSideStreets(std::uint64_t seed, int detour) {
   SimulationOptions options;
@@ -38,8 +37,6 @@ double yawOf(const Eigen::Isometry3d& pose) {
 }
 
 class Detours : public testing::TestWithParam<std::uint64_t> {};
-
-}  // namespace
 
 TEST_P(Detours, LeaveTheStreetAndComeBackWithoutAJerk) {
   const World world = makeWorld(withSideStreets(GetParam(), 0).world);
@@ -136,4 +133,5 @@ TEST(Detour, RefusesAStreetWithoutRoomAndASideStreetThatIsNotThere) {
   EXPECT_THROW(options.validate(), Error);
 }
 
+}  // namespace
 }  // namespace polemcl::test_detour

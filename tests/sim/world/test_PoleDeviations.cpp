@@ -1,16 +1,14 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
 
 #include "sim/world/StreetObjects.h"
 #include "sim/world/World.h"
 
 namespace polemcl::test_pole_deviations {
+namespace {
 
 using namespace polemcl::sim;
-
-namespace {
 
 const Site kSite{{10, 20, 3}, 0.7};
 
@@ -46,8 +44,6 @@ Eigen::Vector3d axisAt(const WorldObject& object, double height) {
   }
   return {0, 0, 0};
 }
-
-}  // namespace
 
 TEST(PoleDeviations, TruthIsTheAxisAtOneAndAHalfMetres) {
   for (auto rate : {&RealismOptions::crooked, &RealismOptions::tapered, &RealismOptions::leaning})
@@ -127,4 +123,5 @@ TEST(PoleDeviations, WithoutScaleTheWorldIsAsBefore) {
   for (const WorldObject& object : a.objects()) EXPECT_EQ(ids.count(object.id), 1u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_deviations

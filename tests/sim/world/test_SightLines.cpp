@@ -5,10 +5,9 @@
 #include "sim/world/SightLines.h"
 
 namespace polemcl::test_sight_lines {
+namespace {
 
 using namespace polemcl::sim;
-
-namespace {
 
 /// A block 4 m wide and 2 m deep at (10, 0), turned by an angle.
 SightLines::Block block(double turn) {
@@ -19,8 +18,6 @@ SightLines::Block block(double turn) {
   block.reach = std::sqrt(5);
   return block;
 }
-
-}  // namespace
 
 TEST(SightLines, TheFreeWayEndsAtTheFirstBlock) {
   const SightLines::Block near = block(0);
@@ -74,4 +71,5 @@ TEST(SightLines, BoardsAndContainersHideAndMeshIsToldApart) {
   EXPECT_FALSE(blocked(Kind::car, Obstacle::opaque)) << "the model's rates hold what cars hide";
 }
 
+}  // namespace
 }  // namespace polemcl::test_sight_lines

@@ -9,10 +9,10 @@
 #include "support/TempFolder.h"
 
 namespace polemcl::test_street {
+namespace {
 
 using namespace polemcl::sim;
 
-namespace {
 class Street_Track : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return (m_folder / name).string(); }
@@ -26,8 +26,6 @@ class Street_Track : public testing::Test {
  private:
   testing_apps::TempFolder m_folder;
 };
-}  // namespace
-
 TEST(Street, StraightOneByHand) {
   const Street street(std::vector<Eigen::Vector2d>{{0, 0}, {30, 40}});  // 3-4-5
   EXPECT_NEAR(street.length(), 50, 1e-9);
@@ -118,4 +116,5 @@ TEST_F(Street_Track, RefusesAMissingFileAndALineOfElevenNumbers) {
   EXPECT_REFUSED(Street::make(options), "short.txt:5");
 }
 
+}  // namespace
 }  // namespace polemcl::test_street

@@ -6,10 +6,10 @@
 #include "sim/world/Terrain.h"
 
 namespace polemcl::test_terrain {
+namespace {
 
 using namespace polemcl::sim;
 
-namespace {
 WorldOptions flatOptions() {
   WorldOptions options;
   options.relief = 0;
@@ -18,8 +18,6 @@ WorldOptions flatOptions() {
 Street straightStreet() {
   return Street(std::vector<Eigen::Vector2d>{{-100, 0}, {100, 0}});
 }
-}  // namespace
-
 TEST(Terrain, FlatRoadAndKerbByHand) {
   const Terrain terrain(flatOptions(), straightStreet(), {});  // road from y = -5 to 5
   EXPECT_NEAR(terrain.height(0, 0), 0, 1e-6);
@@ -98,4 +96,5 @@ TEST(Terrain, HitsLieOnTheGroundAndNothingWasMissedBefore) {
   EXPECT_GT(kerbs, 20);
 }
 
+}  // namespace
 }  // namespace polemcl::test_terrain

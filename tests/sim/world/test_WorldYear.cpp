@@ -1,5 +1,4 @@
-/// \file test_WorldYear.cpp
-/// \brief Changes of a world during a year: permanent changes of poles, seasons, building sites.
+// Changes of a world during a year: permanent changes of poles, seasons, building sites.
 
 #include <gtest/gtest.h>
 
@@ -12,10 +11,9 @@
 #include "support/Worlds.h"
 
 namespace polemcl::test_world_year {
+namespace {
 
 using namespace polemcl::sim;
-
-namespace {
 
 WorldOptions street(std::uint64_t seed, int day, double length = 400) {
   WorldOptions options = tests::streetOptions(seed, day, length);
@@ -28,8 +26,6 @@ double distance(const BuildingSite& site, double x, double y) {
   for (const auto& place : site.kerb) best = std::min(best, (place - Eigen::Vector2d(x, y)).norm());
   return best;
 }
-
-}  // namespace
 
 TEST(WorldYear, PolesThatGoStayGoneAndThoseThatComeStay) {
   std::map<std::uint32_t, TruePole> before, everGone;
@@ -210,4 +206,5 @@ TEST(WorldYear, PolesComeBackWhenTheWorkIsDone) {
   EXPECT_GT(extra, 2u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_world_year

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
 
@@ -8,9 +7,6 @@
 #include "sim/common/Random.h"
 
 namespace polemcl::test_circle_fit {
-
-using namespace polemcl;
-
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -91,8 +87,6 @@ Bias bias(double depth, double radius, Fit fit) {
   EXPECT_GT(n, 390);
   return {mean.centre / n, mean.radius / n};
 }
-
-}  // namespace
 
 TEST(CircleFit, PointsOnACircleGiveThatCircle) {
   for (const double to : {1.0, 2.5, 6.0}) {
@@ -180,4 +174,5 @@ TEST(CircleFit, OnShortArcsKasaIsTooSmall) {
   EXPECT_LT(kasa.centre, -0.02);
 }
 
+}  // namespace
 }  // namespace polemcl::test_circle_fit

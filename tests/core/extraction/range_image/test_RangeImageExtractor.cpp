@@ -8,11 +8,9 @@
 #include "support/KnownScene.h"
 
 namespace polemcl::test_range_image_extractor {
-
-using namespace polemcl;
-using namespace polemcl::clouds;
-
 namespace {
+
+using namespace polemcl::clouds;
 
 /// Algorithm 1 with heights as the authors compare them. The view fits the OS1-64, the sensor of
 /// these scans.
@@ -58,8 +56,6 @@ void expectYard(const Result& result, double tolerance) {
     EXPECT_GE(pole->points, 6u);
   }
 }
-
-}  // namespace
 
 // Nothing is said but the method: size, field of view and heights are those of the sensor.
 TEST(RangeImageExtractor, FitsEachSensorByItself) {
@@ -178,8 +174,6 @@ TEST(RangeImageExtractor, AMirroredImageFindsTheSamePoles) {
   expectYard(extract(yardPoints(), options), 0.06);
 }
 
-namespace {
-
 constexpr int kRingRows = 21, kRingPoints = 18;
 
 /// A pole of 0.05 m at 10 m in one column of the image: 21 rows from -0.6 to 1.2 m, in each 17
@@ -197,8 +191,6 @@ PointList flatFront() {
   }
   return points;
 }
-
-}  // namespace
 
 TEST(RangeImageExtractor, TheFirstCircleMayBeOfAnySize) {
   ExtractionOptions options = paperOptions();
@@ -266,8 +258,6 @@ TEST(RangeImageExtractor, FromNothingComesNothing) {
   EXPECT_TRUE(extract(points, paperOptions()).poles.empty());
 }
 
-namespace {
-
 struct Spoiled {
   RejectionReason reason;
   std::function<void(RangeImageOptions&)> spoil;
@@ -281,8 +271,6 @@ const std::vector<Spoiled> kSpoiled = {
     {RejectionReason::tooShort, [](RangeImageOptions& o) { o.minHeight = 6; }},
     {RejectionReason::badFit, [](RangeImageOptions& o) { o.maxRadius = 0.03; }},
     {RejectionReason::notFree, [](RangeImageOptions& o) { o.freeShare = 0; }}};
-
-}  // namespace
 
 TEST_P(PaperExtractorRefusal, IsCounted) {
   ExtractionOptions options = paperOptions();
@@ -303,4 +291,5 @@ TEST(PaperExtractorRefusal, WhatStandsBehindOthersIsNotInTheForeground) {
   EXPECT_GE(result.of(RejectionReason::notForeground), 1u);
 }
 
+}  // namespace
 }  // namespace polemcl::test_range_image_extractor

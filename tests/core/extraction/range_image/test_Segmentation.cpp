@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -10,9 +9,6 @@
 #include "sim/common/Random.h"
 
 namespace polemcl::test_segmentation {
-
-using namespace polemcl;
-
 namespace {
 
 /// One string a row; '.' is no return, a digit a range of as many metres.
@@ -126,8 +122,6 @@ void expectLabels(const RangeImage& image, const Segmentation& segmentation,
   }
 }
 
-}  // namespace
-
 TEST(Segmentation, LikeNeighboursMakeOneSegment) {
   EXPECT_EQ(segment({"1122..",  //
                      "1.22.4",  //
@@ -226,4 +220,5 @@ TEST(Segmentation, TakesALargeImageOfOneSegment) {
   EXPECT_EQ(segmentation.segments()[0].height(), 512);
 }
 
+}  // namespace
 }  // namespace polemcl::test_segmentation

@@ -7,10 +7,9 @@
 #include "support/RayCast.h"
 
 namespace polemcl::test_candidate_features {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 ScanLineSegment segmentAt(double x, double y, double z, double width = 0.2) {
   ScanLineSegment s;
@@ -92,8 +91,6 @@ Wall board(double low, double high, double halfWidth) {
   return {kDistance - 0.05, -halfWidth, kDistance - 0.05, halfWidth, low, high};
 }
 constexpr double kBeamGap = kDistance * 1.4 * kDegree;  ///< a little more than between two beams
-
-}  // namespace
 
 TEST(ClusterShape, OfAnUprightStackIsStraight) {
   const ClusterShape s = shapeOf({segmentAt(5, 1, 2), segmentAt(5, 1, 1), segmentAt(5, 1, -1)});
@@ -227,4 +224,5 @@ TEST(CandidateFeatures, WhatIsOutsideTheRingDoesNotClutter) {
   EXPECT_LE(look.clutter(), look.groundShare());
 }
 
+}  // namespace
 }  // namespace polemcl::test_candidate_features

@@ -8,10 +8,9 @@
 #include "support/Sensors.h"
 
 namespace polemcl::test_ground_grid {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 GroundGrid built(const PointList& points, double sensorHeight,
                  const Eigen::Vector2f& upright = Eigen::Vector2f::Zero()) {
@@ -46,8 +45,6 @@ Scene onGround(const GroundPlane& ground) {
   scene.ground = ground;
   return scene;
 }
-
-}  // namespace
 
 TEST(GroundGrid, FlatGroundIsFlat) {
   for (const std::string model : {"hdl64e", "hdl32e", "vlp16"}) {
@@ -172,4 +169,5 @@ TEST(GroundGrid, EveryPointIsInTheCellOfItsPlace) {
         << points.x[i] << ' ' << points.y[i];
 }
 
+}  // namespace
 }  // namespace polemcl::test_ground_grid

@@ -12,10 +12,9 @@
 #include "support/WholeScan.h"
 
 namespace polemcl::test_pole_fitting {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 /// Twelve beams, the number that meets a pole of 1 m at 10 m; firing steps of 3 mrad.
 SensorModel twelveBeams() {
@@ -98,8 +97,6 @@ Statistics statistics(double distance, double radius, Fit fit) {
 Statistics statistics(double distance, double radius) {
   return statistics(distance, radius, [](const Scan& scan) { return scan.fit(); });
 }
-
-}  // namespace
 
 TEST(PoleFitting, PostsAreFoundWithoutBias) {
   for (const double distance : {5.0, 10.0, 20.0}) {
@@ -294,4 +291,5 @@ TEST(PoleFitting, RoughAxisIsWithinAFewCentimetres) {
       }
 }
 
+}  // namespace
 }  // namespace polemcl::test_pole_fitting

@@ -9,10 +9,9 @@
 #include "support/WholeScan.h"
 
 namespace polemcl::test_scan_line_segmenter {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 /// Two beams, ±1°; 720 firing steps of 0.5°: 8.7 cm at 10 m.
 SensorModel twoBeams() {
@@ -69,8 +68,6 @@ class Drawing {
 Drawing poleBefore(double background) {
   return Drawing(background).fill(0, 300, 304, 10);
 }
-
-}  // namespace
 
 TEST(Segments, APoleBeforeAFarWallIsOneWholeSlice) {
   const auto segments = poleBefore(12).segments();
@@ -273,4 +270,5 @@ TEST(Segments, TurningTheScanTurnsTheSlices) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_scan_line_segmenter

@@ -11,10 +11,9 @@
 #include "support/WholeScan.h"
 
 namespace polemcl::test_scan_lines {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 constexpr float kMinRange = 1, kMaxRange = 60;
 
@@ -147,8 +146,6 @@ struct ExactCopy {
   std::size_t size;
   PointsView view() const { return {x.get(), y.get(), z.get(), size}; }
 };
-
-}  // namespace
 
 TEST(ScanLines, EqualsABruteForceOnCloudsOfAnySize) {
   const SensorModel sensor = sensorModel();
@@ -340,4 +337,5 @@ TEST(ScanLines, LowerBoundEqualsABinarySearch) {
   }
 }
 
+}  // namespace
 }  // namespace polemcl::test_scan_lines

@@ -8,10 +8,9 @@
 #include "support/Sensors.h"
 
 namespace polemcl::test_segment_clustering {
+namespace {
 
 using namespace polemcl::clouds;
-
-namespace {
 
 SensorModel sensorModel(const std::string& model = "hdl64e") {
   return SensorModel(tests::sensorNamed(model));
@@ -87,8 +86,6 @@ Lists bruteForce(const SensorModel& sensor, const std::vector<ScanLineSegment>& 
                  clusters.end());
   return clusters;
 }
-
-}  // namespace
 
 TEST(SegmentClustering, APoleIsOneStackFromTheTop) {
   const SensorModel sensor = sensorModel();
@@ -225,4 +222,5 @@ TEST(SegmentClustering, AllAroundTheSensorNearAndFar) {
     }
 }
 
+}  // namespace
 }  // namespace polemcl::test_segment_clustering

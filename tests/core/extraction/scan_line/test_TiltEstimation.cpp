@@ -3,7 +3,6 @@
 #include "core/extraction/scan_line/TiltEstimation.h"
 
 namespace polemcl::test_tilt_estimation {
-
 namespace {
 
 using Vector = Eigen::Vector2f;
@@ -21,8 +20,6 @@ void expectNear(const Vector& value, const Vector& expected, float tolerance) {
   EXPECT_NEAR(value.x(), expected.x(), tolerance);
   EXPECT_NEAR(value.y(), expected.y(), tolerance);
 }
-
-}  // namespace
 
 TEST(TiltEstimation, WithoutPolesWhatWasKnownBefore) {
   expectNear(estimateTilt({}, {0.01f, -0.02f}), {0.01f, -0.02f}, 1e-7f);
@@ -67,4 +64,5 @@ TEST(TiltEstimation, MovesWhatThePriorHeldUpright) {
   expectNear(shiftBy(pole, {0.02f, 0.04f}, {0.02f, 0.04f}), {-0.01f, -0.02f}, 1e-6f);
 }
 
+}  // namespace
 }  // namespace polemcl::test_tilt_estimation
