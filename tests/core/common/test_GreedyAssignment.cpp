@@ -1,14 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include <polemcl/core/common/Types.h>
 #include "core/common/GreedyAssignment.h"
 
 namespace polemcl::test_greedy_assignment {
-
-using Points = std::vector<Eigen::Vector2d>;
 
 TEST(GreedyAssignment, TakesTheClosestPairFirst) {
   // The second of `a` is nearer to the only point of `b`; the first gets nothing.
@@ -53,39 +50,6 @@ TEST(GreedyAssignment, CandidatesKeepTheirContentAndTheirOwnOrder) {
   ASSERT_EQ(chosen.size(), 2u);
   EXPECT_EQ(chosen[0].label, 'b');
   EXPECT_EQ(chosen[1].label, 'e');
-}
-
-TEST(GreedyAssignment, AgreesWithTakingTheSmallestOfATable) {
-  std::mt19937 random(5);
-  const auto points = [&](std::size_t count) {
-    Points result;
-    for (std::size_t i = 0; i < count; ++i)
-      result.emplace_back(static_cast<double>(random() % 1000) / 100,
-                          static_cast<double>(random() % 1000) / 100);
-    return result;
-  };
-  for (int round = 0; round < 20; ++round) {
-    const Points a = points(40), b = points(30);
-    std::vector<char> usedA(a.size(), 0), usedB(b.size(), 0);
-    std::vector<std::pair<std::size_t, std::size_t>> expected(a.size(), {0, b.size()});
-    for (;;) {
-      double best = 1.0;
-      std::size_t bestA = a.size(), bestB = 0;
-      for (std::size_t i = 0; i < a.size(); ++i)
-        for (std::size_t k = 0; k < b.size(); ++k)
-          if (!usedA[i] && !usedB[k] && (a[i] - b[k]).norm() < best) {
-            best = (a[i] - b[k]).norm();
-            bestA = i;
-            bestB = k;
-          }
-      if (bestA == a.size()) break;
-      usedA[bestA] = usedB[bestB] = 1;
-      expected[bestA].second = bestB;
-    }
-    std::vector<std::size_t> partner(a.size(), b.size());
-    for (const AssignedPair& pair : greedyAssignment(a, b, 1.0)) partner[pair.first] = pair.second;
-    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(partner[i], expected[i].second) << i;
-  }
 }
 
 TEST(GreedyAssignment, RefusesWhatMakesNoSense) {

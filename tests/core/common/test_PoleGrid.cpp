@@ -44,20 +44,12 @@ void compareOnRandomPoints(std::size_t count, double extent, double offset, doub
   }
 }
 
-TEST(PoleGrid, EqualsTheTreeOnSparsePoles) {
-  compareOnRandomPoints(500, 200, -100, 1);
-}
-TEST(PoleGrid, EqualsTheTreeOnCrowdedPoles) {
-  compareOnRandomPoints(3000, 20, 0, 1);
-}
-TEST(PoleGrid, EqualsTheTreeWhenTheRadiusSpansTheMap) {
-  compareOnRandomPoints(60, 10, 3, 30);
-}
-TEST(PoleGrid, EqualsTheTreeFarFromTheOrigin) {
-  compareOnRandomPoints(500, 100, 5.4e6, 0.5);
-}
-TEST(PoleGrid, EqualsTheTreeOverAVastArea) {
-  compareOnRandomPoints(100, 4e7, -2e7, 0.01);
+TEST(PoleGrid, EqualsTheTree) {
+  compareOnRandomPoints(500, 200, -100, 1);     // sparse poles
+  compareOnRandomPoints(3000, 20, 0, 1);        // crowded poles
+  compareOnRandomPoints(60, 10, 3, 30);         // the radius spans the map
+  compareOnRandomPoints(500, 100, 5.4e6, 0.5);  // far from the origin
+  compareOnRandomPoints(100, 4e7, -2e7, 0.01);  // over a vast area
 }
 
 TEST(PoleGrid, TiesAndDuplicatesGoToTheLowerIndex) {

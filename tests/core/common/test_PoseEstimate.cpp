@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "core/common/PoseEstimate.h"
 
@@ -68,46 +66,18 @@ TEST(PoseEstimate, LosesNoDigitsFarFromTheOrigin) {
   EXPECT_NEAR(estimate.covariance(0, 0), 0.125 / 3, 1e-9);
 }
 
-TEST(PoseEstimate, BestShareEqualsTheSortedBest) {
-  std::mt19937_64 random(4);
-  std::normal_distribution<double> normal;
-  std::vector<Pose2D> particles;
-  std::vector<double> logWeights;
-  for (int i = 0; i < 250; ++i) {
-    particles.push_back({normal(random), normal(random), 0.1 * normal(random)});
-    logWeights.push_back(std::floor(3 * normal(random)));  // many ties
-  }
-  std::vector<std::size_t> order(250);
-  for (std::size_t i = 0; i < 250; ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](auto a, auto b) { return logWeights[a] > logWeights[b]; });
-  double sum = 0, x = 0, y = 0;
-  for (int k = 0; k < 25; ++k) {
-    const double w = std::exp(logWeights[order[k]]);
-    sum += w;
-    x += w * particles[order[k]].x;
-    y += w * particles[order[k]].y;
-  }
-  const auto estimate = bestShareMean(particles, logWeights, 0.1);
-  EXPECT_NEAR(estimate.mean.x, x / sum, 1e-12);
-  EXPECT_NEAR(estimate.mean.y, y / sum, 1e-12);
-  // The covariance tells of all particles, about this mean.
-  double total = 0, xx = 0;
-  for (int i = 0; i < 250; ++i) {
-    const double w = std::exp(logWeights[i]);
-    total += w;
-    xx += w * (particles[i].x - x / sum) * (particles[i].x - x / sum);
-  }
-  EXPECT_NEAR(estimate.covariance(0, 0), xx / total, 1e-12);
-}
-
 TEST(PoseEstimate, BestShareTakesAtLeastOneAndNoMoreThanTold) {
   const std::vector<Pose2D> particles{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}};
   const std::vector<double> logWeights{-1, 0, 0, -2};
   expectPose(bestShareMean(particles, logWeights, 0.01).mean, 2, 0,
              0);  // of the tie the lower index
-  expectPose(bestShareMean(particles, logWeights, 0.5).mean, 2.5, 0, 0);
+  const double w = std::exp(-1.0), v = std::exp(-2.0);
+  const auto half = bestShareMean(particles, logWeights, 0.5);
+  expectPose(half.mean, 2.5, 0, 0);
+  // The covariance tells of all particles, about this mean.
+  EXPECT_NEAR(half.covariance(0, 0), (0.5 + 2.25 * (w + v)) / (2 + w + v), 1e-12);
   expectPose(bestShareMean(particles, logWeights, 0.74).mean, 2.5, 0, 0);
+  expectPose(bestShareMean(particles, logWeights, 0.75).mean, (5 + w) / (2 + w), 0, 0);
   const auto all = bestShareMean(particles, logWeights, 1),
              mean = weightedMean(particles, logWeights);
   EXPECT_EQ(all.mean.x, mean.mean.x);
