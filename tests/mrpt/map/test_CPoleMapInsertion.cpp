@@ -31,7 +31,7 @@ TEST(CPoleMapInsertion, InsertsAtTheRobotPose) {
   EXPECT_NEAR(p.covariance(0, 0), 0.04, 1e-12);  // half a turn: unchanged
   EXPECT_NEAR(p.covariance(0, 1), 0.01, 1e-12);
   EXPECT_EQ(p.count, 1u);
-  EXPECT_EQ(p.top, 3.5);
+  EXPECT_EQ(p.top, 4.5);
   EXPECT_TRUE(map.index().nearest(93, 51, 0.1));
 
   scan.poles[0].x += 0.4;  // merges: the map pole moves by half of it

@@ -162,7 +162,7 @@ TEST(CObservationPoles, DescribesItself) {
   std::ostringstream text;
   samples::observation().getDescriptionAsText(text);
   for (const char* part :
-       {"LIDAR", "polemcl::CObservationPoles", "Poles: 2", "1234", "5.000", "3.500", "0.200", "42"})
+       {"LIDAR", "polemcl::CObservationPoles", "Poles: 2", "1234", "5.000", "4.500", "0.200", "42"})
     EXPECT_HAS(text.str(), part) << part << " in\n" << text.str();
 }
 
@@ -172,8 +172,8 @@ TEST(CObservationPoles, ExportsOneRow) {
   EXPECT_FALSE(scan.exportTxtHeader().empty());
   EXPECT_EQ(scan.exportTxtHeader().find('\n'), std::string::npos);
   EXPECT_EQ(scan.exportTxtDataRow(),
-            "2 5.00000 0.00000 0.12500 0.25000 3.50000 0.75000"
-            " -3.00000 4.00000 0.20000 0.25000 3.50000 0.75000");
+            "2 5.00000 0.00000 0.12500 0.25000 4.50000 0.75000"
+            " -3.00000 4.00000 0.20000 0.25000 4.50000 0.75000");
   EXPECT_EQ(CObservationPoles().exportTxtDataRow(), "0");
 }
 
@@ -203,7 +203,7 @@ TEST(CObservationPoles, DrawsPolesAxesGroundAndCovariances) {
   EXPECT_NEAR(cylinder->getPose().x, 1, 1e-6);
   EXPECT_NEAR(cylinder->getPose().y, 7, 1e-6);
   EXPECT_NEAR(cylinder->getPose().z, 0.25, 1e-6);
-  EXPECT_NEAR(cylinder->getHeight(), 3.25, 1e-6);
+  EXPECT_NEAR(cylinder->getHeight(), 4.25, 1e-6);
   EXPECT_NEAR(cylinder->getTopRadius(), 0.125, 1e-6);
 }
 
