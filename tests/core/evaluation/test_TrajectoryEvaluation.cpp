@@ -217,6 +217,10 @@ TEST(Evaluation, MapScoreByHand) {
   EXPECT_NEAR(oneToOne.recall, 0.5, 1e-12);
   EXPECT_NEAR(oneToOne.f1, 0.4, 1e-12);
   EXPECT_EQ(scoreMap(map, truth, 1, true).matches, 1u);
+  EXPECT_EQ(scoreMap(map, truth, 1, false).matches, 1u);
+  Points street;  // far more true poles than map poles, the last of them matched
+  for (int i = 0; i < 1000; ++i) street.emplace_back(10 * i, 0);
+  EXPECT_EQ(scoreMap(street, {{9990, 0}}, 1, true).matches, 1u);
 }
 
 TEST(Evaluation, TheAuthorsRecallCanExceedOne) {
