@@ -82,7 +82,8 @@ std::vector<std::string> mcapSeeds() {
   std::string head, messages;
   std::uint16_t id = 0;
   for (const Recorded& recorded : recording()) {
-    head += mcapSchema(++id, recorded.type) + mcapChannel(id, id, recorded.topic);
+    ++id;
+    head += mcapSchema(id, recorded.type) + mcapChannel(id, id, recorded.topic);
     for (const std::string& message : recorded.messages) messages += mcapMessage(id, 1000, message);
   }
   return {mcapFile(head + messages), mcapFile(mcapChunk(head + messages, "zstd")),
