@@ -253,6 +253,10 @@ TEST_F(InspectApp, TheOrderOfThePointsTellsRawScans) {
       has(readText(folder / "found.ini"),
           "# Unless the scans were corrected for motion: turn = clockwise, moving_cut = true"));
   EXPECT_FALSE(loadSettings(at("found.ini")).sensor.timing.known());
+  const Outcome extracted = run({"--quiet", "--config", at("found.ini"), "--input", at("in.rawlog"),
+                                 "--output", at("poles.rawlog")});
+  EXPECT_HAS(extracted.err, "in.rawlog: scans of ");
+  EXPECT_HAS(extracted.err, " look raw");
   files.writeConfig.reset();
   EXPECT_FALSE(found.timing);
   EXPECT_HAS(printed(found), "in the order of measuring, clockwise");
