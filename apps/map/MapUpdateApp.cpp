@@ -156,6 +156,8 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& setti
     requireSamePlace(counts, job.inputs[i], job.map);
     summary.sessions.push_back(counts);
     summary.skipped += session.skipped;
+    for (const std::string& doubt : session.rawDoubts)
+      summary.doubts.push_back(job.inputs[i].string() + ": " + doubt);
     path.insert(path.end(), session.path.begin(), session.path.end());
   }
   keepWarnings(warningsOf(summary, job), info);
@@ -172,7 +174,7 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& setti
 }
 
 std::vector<std::string> warningsOf(const MapUpdateSummary& summary, const MapUpdateJob& job) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = summary.doubts;
   for (std::size_t i = 0; i < summary.sessions.size(); ++i) {
     const MapUpdateCounts& c = summary.sessions[i];
     if (!(movedShare(c) > kManyMoved)) continue;

@@ -19,8 +19,8 @@ TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds);
 ///             the scans.
 /// \param mapped At the poses that were found, which may show the turn more clearly.
 /// \param timing What the settings say.
-/// \param looksRaw The order of the points tells the turn: it is not named again, with a single
-/// cut. \return A sentence for people; empty when there is nothing to say.
+/// \param looksRaw The order of the points tells the turn, which is not named here then.
+/// \return A sentence for people; empty when there is nothing to say.
 std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped,
                         const ScanTiming& timing, bool looksRaw = false);
 

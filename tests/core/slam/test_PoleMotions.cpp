@@ -54,7 +54,7 @@ class PoleMotionsTest : public testing::Test {
     }
     return most;
   }
-  /// Of all these motions together, m.
+  /// Error of all these motions together, m.
   double errorOfWay(std::size_t begin, std::size_t end) const {
     Pose2D way;
     for (std::size_t i = begin; i < end; ++i) way = compose(way, scans[i].motion->mean);

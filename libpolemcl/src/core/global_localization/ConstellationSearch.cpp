@@ -23,8 +23,8 @@ double oddsOf(const SubmapPole& pole, const GlobalOptions& options) {
   return p / (1 - p);
 }
 
-constexpr double kToleranceSigmas =
-    2.5;                      ///< of tolerances: 96 % of true matches lie within, in the plane
+/// Standard deviations of a tolerance: 96 % of true matches lie within, in the plane.
+constexpr double kToleranceSigmas = 2.5;
 constexpr int kMostUses = 4;  ///< of one query pole in pairs: a false one must not spoil them all
 
 /// Least hits after `probes` probes. A true place, where six of ten query poles find their pole,
