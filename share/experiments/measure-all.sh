@@ -30,7 +30,7 @@ commit=$(git -C "$top" rev-parse --short=8 HEAD)
 export POLEMCL_DATA="$data"
 
 # measure NAME FILE REPORT SCRIPT ARGUMENTS...: runs the script, @ in its arguments is the folder OUT/NAME. FILE in
-# that folder becomes REPORT.
+# that folder becomes REPORT; if FILE is "printed", what the script prints does.
 measure() {
   name=$1 file=$2 report=$3
   shift 3
@@ -45,12 +45,18 @@ measure() {
     [ "$argument" != @ ] || argument=$out/$name
     set -- "$@" "$argument"
   done
-  if ! "$script" "$@" >"$out/$name.log" 2>&1; then
+  if ! "$script" "$@" >"$out/$name.txt" 2>"$out/$name.log"; then
     failed="${failed-} $name"
     return 0
   fi
-  sed "s#$out/##g" "$out/$name/$file" >"$out/reports/$report"
+  also "$name" "$file" "$report"
   echo "$name,$commit,$(date +%F),$((($(date +%s) - begun + 59) / 60))" >>"$out/reports/measured.csv"
+}
+
+# also NAME FILE REPORT: another FILE of the experiment NAME becomes a report.
+also() {
+  case $2 in printed) file=$out/$1.txt ;; *) file=$out/$1/$2 ;; esac
+  [ ! -e "$file" ] || sed "s#$out/##g" "$file" >"$out/reports/$3"
 }
 
 # join REPORT JQ_FILTER PART...: one report of several, if all are there.
@@ -76,6 +82,13 @@ measure range-correction result.json range-correction.json range-correction.sh "
 measure paper-parity parity.json paper-parity.json paper-parity.sh "$data/kitti_raw_0005" @
 measure kitti-00 result.json kitti-00.json kitti-00.sh "$data" @
 measure repeatability result.json repeatability.json repeatability.sh "$data" @
+measure kitti-00-missed labels.csv kitti-00-missed.csv kitti-00-missed.sh "$data" @
+measure map-errors missed.csv map-errors-missed.csv map-errors.sh "$data" "$kilometre" @
+also map-errors false.csv map-errors-false.csv
+also map-errors ceiling.csv map-errors-ceiling.csv
+measure pole-radii printed pole-radii.txt pole_radii.py "$out/real-drives"
+measure paper-extraction-parity table.txt paper-extraction.txt paper-extraction-parity.sh "$data" @
+measure likelihood table.txt likelihood.txt likelihood-sweep.sh "$data/kitti_raw_0005" @
 measure pf-localization result.json pf-localization.json pf-localization.sh @
 measure street-7 result.json street-7.json hdl32-street.sh @ 7
 measure consistency result.json consistency.json consistency.sh @
@@ -94,11 +107,13 @@ join global.json '{default: .[0], dense: .[1]}' global-default.json global-dense
 measure first-map table.txt first-map.txt first-map.sh @
 measure first-map-600 table.txt first-map-600.txt first-map.sh @ 600
 measure motion-distortion result.json motion-distortion.json motion-distortion.sh @ 824 3 200
+measure pole-sides printed pole-sides.txt pole_sides.py "$out/motion-distortion"
 measure two-lidars result.json two-lidars.json two-lidars.sh @ 861 3 150
 measure crossed-sensors result.json crossed-sensors.json crossed-sensors.sh @ "$kilometre"
 measure map-counting result.json map-counting.json map-counting.sh @
 measure map-without-truth result.json map-without-truth.json map-without-truth.sh "$data" @ \
   --kilometre "$kilometre" --tracks "$data/tracks"
+measure detection-model table.txt detection-model.txt detection-model.sh @
 measure realism result.json realism.json realism.sh @
 measure range-image-presets table.txt range-image-presets.txt range-image-presets.sh @ 911 3 200
 measure speed result.json speed.json speed.sh "$data" @
