@@ -8,7 +8,10 @@
 #include <polemcl/core/common/Types.h>
 #include "extract/ExtractApp.h"
 #include "extract/InspectApp.h"
+#include "import/ImportApp.h"
 #include "io/data/Trajectory.h"
+#include "localize/LocalizeApp.h"
+#include "map/MapApp.h"
 #include "sim/drive/Drive.h"
 #include "sim/lidar/Scanner.h"
 #include "simulate/SimulateApp.h"
@@ -239,6 +242,24 @@ TEST_F(InspectApp, FindsACutThatMovesAndRangesThatAreOff) {
   const SensorOptions written = loadSettings((folder / "found.ini").string()).sensor;
   EXPECT_NEAR(written.rangeOffset, found.ranges->offset, 0.0005);
   EXPECT_NEAR(written.rangeScale, found.ranges->scale, 0.00005);
+}
+
+// A warning of each program that takes poles from scans, with --quiet too.
+TEST_F(InspectApp, RawScansAreToldByMapsAndPosesToo) {
+  importCutAnew("40");
+  succeeded(runProgram(importMain, {"folder", "--quiet", "--input", at("in"), "--output",
+                                    at("drive.rawlog"), "--odometry", at("sim.tum")}));
+  const std::vector<std::string> drive{"--quiet",          "--config", "vlp16.ini",  "--input",
+                                       at("drive.rawlog"), "--truth",  at("sim.tum")};
+  const std::string told = "drive.rawlog: scans of lidar look raw";
+  const Outcome built = runProgram(mapMain, {"build", "--output", at("street.polemap")}, drive);
+  EXPECT_HAS(built.err, told);
+  const Outcome updated = runProgram(
+      mapMain, {"update", "--map", at("street.polemap"), "--output", at("new.polemap")}, drive);
+  EXPECT_HAS(updated.err, told);
+  const Outcome localized =
+      runProgram(localizeMain, {"--map", at("street.polemap"), "--output", at("poses")}, drive);
+  EXPECT_HAS(localized.err, told);
 }
 
 // Also where nobody knows the motion, or where the poses were found from the same scans.
