@@ -151,10 +151,10 @@ void doBatch(const BatchOptions& options) {
   const Failures failures = options.slurm ? runThere(options, folder, plan, open.tasks)
                                           : runHere(options, folder, plan, open.tasks);
   folder.sweep();
-  BatchTimings timings = collectTimings(folder, plan);
+  Json timings = collectTimings(folder, plan);
   if (open.tasks.size() == plan.tasks.size()) {
-    timings.wall = secondsSince(begin);
-    timings.jobs = options.slurm ? 0 : jobsOf(options);
+    timings["wall_s"] = secondsSince(begin);
+    timings["jobs"] = options.slurm ? 0 : jobsOf(options);
   }
   try {
     const auto results = collectBatch(folder, plan, spec, failures, commandOf(options, spec));

@@ -12,7 +12,6 @@
 
 #include "batch/BatchCommands.h"
 #include "batch/BatchRunner.h"
-#include "cli/JsonFile.h"
 #include "cli/Version.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
@@ -288,16 +287,17 @@ report::BatchResults collectBatch(const BatchFolder& folder, const BatchPlan& pl
   return results;
 }
 
-BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& plan) {
-  BatchTimings timings;
-  timings.machine = machine();
+Json collectTimings(const BatchFolder& folder, const BatchPlan& plan) {
+  Json timings{{"machine", machine()}, {"wall_s", nullptr}, {"jobs", 0}, {"tasks", Json::array()}};
+  Json& kinds = timings["tasks"];
   for (const auto& task : plan.tasks) {
     const double seconds = folder.seconds(task.id);
     if (std::isnan(seconds)) continue;
-    auto kind = std::find_if(timings.tasks.begin(), timings.tasks.end(),
-                             [&](const auto& times) { return times.kind == name(task.kind); });
-    if (kind == timings.tasks.end()) kind = timings.tasks.insert(kind, {name(task.kind), {}});
-    kind->seconds.push_back(seconds);
+    auto kind = std::find_if(kinds.begin(), kinds.end(),
+                             [&](const Json& times) { return times["kind"] == name(task.kind); });
+    if (kind == kinds.end())
+      kind = kinds.insert(kind, Json{{"kind", name(task.kind)}, {"seconds", Json::array()}});
+    (*kind)["seconds"].push_back(seconds);
   }
   return timings;
 }
@@ -309,14 +309,9 @@ void removeResults(const BatchFolder& folder) {
 }
 
 void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,
-                     const BatchTimings& timings) {
-  const fs::path& path = folder.path();
-  report::writeResultsJson(path / "results.json", results);
-  Json times = {{"machine", timings.machine}, {"wall_s", timings.wall}, {"jobs", timings.jobs}};
-  times["tasks"] = Json::array();
-  for (const TaskTimes& task : timings.tasks)
-    times["tasks"].push_back({{"kind", task.kind}, {"seconds", task.seconds}});
-  writeJson(path / "timings.json", times);
+                     const Json& timings) {
+  report::writeResultsJson(folder.path() / "results.json", results);
+  writeJson(folder.path() / "timings.json", timings);
 }
 
 void writeReport(const BatchFolder& folder) {

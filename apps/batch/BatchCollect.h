@@ -9,6 +9,7 @@
 #include "batch/BatchFolder.h"
 #include "batch/BatchPlan.h"
 #include "batch/BatchSpec.h"
+#include "cli/JsonFile.h"
 #include "report/batch/BatchResults.h"
 
 namespace polemcl::apps {
@@ -23,21 +24,11 @@ report::BatchResults collectBatch(const BatchFolder& folder, const BatchPlan& pl
                                   const std::map<std::string, std::string>& failures,
                                   const std::string& command);
 
-/// \brief Times of the tasks of one kind ("extract"), s.
-struct TaskTimes {
-  std::string kind;
-  std::vector<double> seconds;  ///< one for each task
-};
-/// \brief How long a batch took: the only part of a report that differs from one time to the next.
-struct BatchTimings {
-  std::string machine;             ///< "2 cores, AMD EPYC"; may be empty
-  double wall = report::noFigure;  ///< s, from the first task to the last
-  std::size_t jobs = 0;            ///< at the same time; 0 when not known
-  std::vector<TaskTimes> tasks;
-};
-
-/// \brief How long the tasks took, each the last time that it was done.
-BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& plan);
+/// \brief How long a batch took, the only part of a report that differs from one time to the next:
+/// `machine`, and in `tasks` for each `kind` the `seconds` of each task, the last time that it was
+/// done. `wall_s`, s from the first task to the last, is `null`, and `jobs` at the same time 0: the
+/// caller may know them.
+Json collectTimings(const BatchFolder& folder, const BatchPlan& plan);
 
 /// \brief Removes all results and the report of an earlier state of the batch.
 void removeResults(const BatchFolder& folder);
@@ -45,7 +36,7 @@ void removeResults(const BatchFolder& folder);
 /// \brief Writes `results.json`, without `summary`, and `timings.json` into the batch's folder.
 /// \throws Error when one cannot be written.
 void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,
-                     const BatchTimings& timings);
+                     const Json& timings);
 
 /// \brief Makes `report.html`, `table.tex`, `runs.csv`, `sessions.csv` and `maps.csv` of these
 /// files and adds `summary` to `results.json`, by the script share/report/report.py. \throws Error

@@ -1,7 +1,6 @@
 #include "batch/BatchFolder.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -16,7 +15,6 @@
 #include "cli/JsonFile.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
-#include "io/file/Sync.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -95,10 +93,6 @@ std::string host() {
 
 BatchFolder::BatchFolder(const fs::path& path) : m_path(fs::absolute(path).lexically_normal()) {}
 
-BatchFolder::~BatchFolder() {
-  if (m_lock >= 0) ::close(m_lock);
-}
-
 void BatchFolder::take(const std::string& name, bool resume) {
   const bool known = fs::exists(m_path / kMarker);
   // Begun, but cut short before its plan was written: ours as well.
@@ -111,9 +105,10 @@ void BatchFolder::take(const std::string& name, bool resume) {
                 "--output");
   createFolder(m_path);
   const fs::path lock = m_path / kLock;
-  m_lock = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (m_lock < 0) throw Error(lock.string() + ": cannot be written: " + std::strerror(errno));
-  if (::flock(m_lock, LOCK_EX | LOCK_NB) != 0)
+  const int descriptor = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) throw Error(lock.string() + ": cannot be written: " + std::strerror(errno));
+  m_lock = io::PathLock(descriptor);
+  if (!m_lock.isHeld())
     throw Error(m_path.string() + ": a batch is under way in this folder; wait for it, or stop it");
   if (!known) return;
   std::string there;

@@ -14,15 +14,13 @@
 #include <string>
 
 #include "batch/BatchPlan.h"
+#include "io/file/Leftovers.h"
 
 namespace polemcl::apps {
 
 class BatchFolder {
  public:
   explicit BatchFolder(const std::filesystem::path& path);
-  ~BatchFolder();
-  BatchFolder(const BatchFolder&) = delete;
-  BatchFolder& operator=(const BatchFolder&) = delete;
 
   const std::filesystem::path& path() const { return m_path; }
   std::filesystem::path work(const std::string& task) const { return m_path / "tasks" / task; }
@@ -73,7 +71,7 @@ class BatchFolder {
   std::filesystem::path part(const BatchTask& task) const;
 
   std::filesystem::path m_path;
-  int m_lock = -1;
+  io::PathLock m_lock;
 };
 
 }  // namespace polemcl::apps

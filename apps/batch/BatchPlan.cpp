@@ -8,7 +8,7 @@
 #include <set>
 
 #include "batch/BatchCommands.h"
-#include "batch/BatchInputs.h"
+#include "batch/BatchSpec.h"
 #include "cli/Settings.h"
 #include "config/Config.h"
 #include "io/file/Bytes.h"

@@ -5,28 +5,23 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
-#include <sstream>
 
 #include "config/Config.h"
 #include "core/common/Binder.h"
+#include "io/dataset/Nclt.h"
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/InstalledFiles.h"
+#include "io/file/TextFile.h"
 #include "report/batch/PublishedResults.h"
 
 namespace polemcl::apps {
+
 namespace fs = std::filesystem;
 namespace {
 
 const std::vector<std::string> sources{"simulated", "poles", "scans",  "folder", "kitti-odometry",
                                        "kitti-raw", "nclt",  "mulran", "pcd",    "rosbag2"};
-
-std::vector<std::string> words(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> all;
-  for (std::string word; stream >> word;) all.push_back(word);
-  return all;
-}
 
 /// Names become names of files and jobs, joined by dots.
 void requireName(const std::string& name, const std::string& where) {
@@ -137,7 +132,7 @@ BatchSession finished(const SessionText& text, const std::string& name, const Pl
   s.calib = fill.path(s.calib, name);
   if (s.truthMap != truthFromLabels) s.truthMap = fill.path(s.truthMap, name);
   s.date = fill.filled(s.date, name);
-  for (const std::string& word : words(text.set)) s.set.push_back(fill.filled(word, name));
+  for (const std::string& word : io::wordsOf(text.set)) s.set.push_back(fill.filled(word, name));
   requireImport(text.session, where + "session " + name + ": ");
   if (s.input.empty()) throw Error(where + "session " + name + ": input is missing");
   if (!s.date.empty())
@@ -157,7 +152,7 @@ std::vector<std::string> namesIn(const ConfigFile& file, const std::string& sect
   std::string text;
   reader.section(section, "");
   reader.text(key, text, "");
-  return words(text);
+  return io::wordsOf(text);
 }
 
 std::vector<BatchSession> readSessions(ConfigReader& reader, const Placeholders& fill,
@@ -169,7 +164,7 @@ std::vector<BatchSession> readSessions(ConfigReader& reader, const Placeholders&
   reader.section("sessions", "What all sessions have in common");
   reader.text("names", text, "in the order they were driven");
   bindSession(reader, common);
-  const auto names = words(text);
+  const auto names = io::wordsOf(text);
   requireNames(names, where + "[sessions] names");
   for (const char* taken : {"all", "first", "later", "none"})
     if (has(names, taken))
@@ -200,7 +195,7 @@ std::vector<std::string> chosen(const std::string& text, const std::vector<Batch
     throw Error(where + " = later: two sessions or more are needed, [sessions] names has only " +
                 sessions.front().name +
                 "; add one, or choose settings without this one (--set batch.settings=NAMES)");
-  std::vector<std::string> names = words(text);
+  std::vector<std::string> names = io::wordsOf(text);
   if (text == "all" || text == "later") {
     names.clear();
     for (const auto& session : sessions) names.push_back(session.name);
@@ -266,7 +261,7 @@ BatchConfiguration finished(const ConfigurationText& text, const Placeholders& f
   if (configuration.config.empty())
     throw Error(here + "config is missing (each of [batch] settings has a section of its own)");
   configuration.config = fill.installed(configuration.config, "", "config");
-  configuration.set = words(text.set);
+  configuration.set = io::wordsOf(text.set);
   configuration.mapSessions = chosen(text.mapSessions, sessions, here + "map_sessions");
   if (text.localized != "none")
     configuration.sessions = chosen(text.localized, sessions, here + "sessions");
@@ -334,6 +329,28 @@ void requireOrder(const BatchConfiguration& configuration, const BatchSpec& spec
   }
 }
 
+std::string sessionObstacle(const BatchSession& session) {
+  const bool isFile =
+      session.source == "simulated" || session.source == "poles" || session.source == "scans";
+  if (session.source == "nclt" && io::isNcltSession(session.input)) return {};
+  if (!fs::exists(session.input)) return session.input + " is not there";
+  if (isFile && !fs::is_regular_file(session.input)) return session.input + " is no file";
+  if (!isFile && !fs::is_directory(session.input)) return session.input + " is no folder";
+  const fs::path truth = fs::path(session.input).replace_extension(".tum");
+  if (isFile && session.source != "simulated" && !fs::is_regular_file(truth))
+    return truth.string() + ", its true poses, is not there";
+  return {};
+}
+
+std::string truthObstacle(const BatchSession& session) {
+  if (session.truthMap != truthFromLabels)
+    return fs::is_regular_file(session.truthMap)
+               ? ""
+               : session.truthMap + ", its truth_map, is not there";
+  const fs::path labels = fs::path(session.input) / "labels";
+  return fs::is_directory(labels) ? "" : labels.string() + " is not there";
+}
+
 }  // namespace
 
 const BatchSession& BatchSpec::session(const std::string& wanted) const {
@@ -381,11 +398,11 @@ BatchSpec readBatchSpec(const fs::path& wanted, const fs::path& data,
                       "where they are taken");
   reader.text("settings", names, "names; each has a section of its own");
   requireName(spec.name, where + "[batch] name (the file's unless given)");
-  requireNames(words(names), where + "[batch] settings");
+  requireNames(io::wordsOf(names), where + "[batch] settings");
   if (!spec.publishedSessions.empty())
     spec.publishedSessions = fill.installed(spec.publishedSessions, "", "published");
   spec.sessions = readSessions(reader, fill, allSessions, where);
-  readConfigurations(reader, words(names), fill, allConfigurations, spec);
+  readConfigurations(reader, io::wordsOf(names), fill, allConfigurations, spec);
   reader.finish();
   for (const auto& configuration : spec.configurations) {
     const std::string here = where + "[setting " + configuration.name + "] ";
@@ -402,6 +419,32 @@ std::uint32_t seedOf(std::uint32_t seed, const std::string& name) {
   const std::string text = std::to_string(seed) + "/" + name;
   return static_cast<std::uint32_t>(
       ::crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())));
+}
+
+std::string inputObstacle(const BatchSession& session, bool scored) {
+  const std::string what = sessionObstacle(session);
+  return what.empty() && scored ? truthObstacle(session) : what;
+}
+
+std::string besideBatch(const BatchSpec& spec, const std::string& file) {
+  if (file.empty()) return file;
+  const fs::path beside = fs::absolute(spec.file.parent_path() / file);
+  return fs::is_regular_file(beside) ? beside.string() : file;
+}
+
+AllSettings settingsFor(const BatchSpec& spec, const BatchConfiguration& configuration) {
+  const std::string where = "batch " + spec.name + ": [setting " + configuration.name + "] ";
+  if (!fs::is_regular_file(configuration.config))
+    throw Error(
+        where + "config: " + configuration.config +
+        " is not there; name a file beside the batch, or an installed one such as nclt.ini");
+  return io::located(where, [&] { return loadSettings(configuration.config, configuration.set); });
+}
+
+void requirePublished(const BatchSpec& spec) {
+  if (spec.publishedSessions.empty()) return;
+  io::located("batch " + spec.name + ": [batch] published_sessions: ",
+              [&] { report::readPublishedSessions(spec.publishedSessions); });
 }
 
 }  // namespace polemcl::apps

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/Settings.h"
+
 namespace polemcl::apps {
 
 /// \brief One drive: where it comes from. `[sessions]` holds what all have in common, a section
@@ -105,5 +107,20 @@ BatchSpec readBatchSpec(const std::filesystem::path& file, const std::filesystem
 /// \brief A seed from names: the same whatever else is in the batch, and in whatever order.
 /// \param name Name of what draws the random numbers, such as "month_03/run 4".
 std::uint32_t seedOf(std::uint32_t seed, const std::string& name);
+
+/// \brief What is wrong with a session's input; empty when nothing is.
+/// \param scored Whether its true poles (truthMap) are needed as well.
+std::string inputObstacle(const BatchSession& session, bool scored);
+
+/// \brief A file that settings name: beside the batch if it is there, else as the programs find it.
+std::string besideBatch(const BatchSpec& spec, const std::string& file);
+
+/// \brief The settings of a configuration. \throws Error as loadSettings(), naming batch and
+/// configuration, and when its config is not there.
+AllSettings settingsFor(const BatchSpec& spec, const BatchConfiguration& configuration);
+
+/// \brief Reads the published figures of a batch, if it has any. \throws Error as
+/// report::readPublishedSessions(), naming batch and key.
+void requirePublished(const BatchSpec& spec);
 
 }  // namespace polemcl::apps

@@ -10,7 +10,6 @@
 #include <optional>
 
 #include <polemcl/mrpt/map/CPoleMap.h>
-#include "cli/Failure.h"
 #include "cli/Messages.h"
 #include "cli/Outputs.h"
 #include "cli/Progress.h"
@@ -189,10 +188,7 @@ std::string oneLine(const std::string& message) {
     text = text.substr(at + label.size());
     text = text.substr(0, text.find("\nLocation:"));
   }
-  std::istringstream words(text);
-  std::string line;
-  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
-  return printable(line);
+  return printable(io::joined(io::wordsOf(text), " "));
 }
 
 }  // namespace polemcl::apps

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <vector>
+
+#include "io/file/TextFile.h"
 
 namespace polemcl::apps {
 namespace {
@@ -15,15 +16,14 @@ constexpr std::size_t kMeaningColumn = 26;  // where the meanings begin
 /// Words in lines that begin at a column; the first line has `at` characters already.
 std::string wrapped(const std::string& text, std::size_t column, std::size_t at = 0) {
   std::string lines;
-  std::istringstream words(text);
-  for (std::string word; words >> word; at += word.size()) {
+  for (const std::string& word : io::wordsOf(text)) {
     if (at > column && at + 1 + word.size() > kLineWidth) {
       lines += '\n';
       at = 0;
     }
     const std::size_t gap = at < column ? column - at : at > 0 ? 1 : 0;
     lines += std::string(gap, ' ') + word;
-    at += gap;
+    at += gap + word.size();
   }
   return lines + '\n';
 }

@@ -1,8 +1,9 @@
 #pragma once
 /// \file Messages.h
 /// \brief What programs say on standard error besides progress: in colour for people, and in detail
-/// with `--verbose`.
+/// with `--verbose`; how one that failed says why.
 
+#include <exception>
 #include <string>
 
 namespace polemcl::apps {
@@ -26,5 +27,16 @@ void sayDetail(const std::string& text);
 
 /// \brief Time and memory that the process took, such as `3.2 s, at most 120 MB of memory`.
 std::string resourcesTaken(double seconds);
+
+/// \brief What an exception says, in words for people where memory or threads are missing.
+std::string reasonOf(const std::exception& error);
+
+/// \brief Writes "PROGRAM: TEXT" to standard error.
+void sayFailure(const std::string& program, const std::string& text);
+
+/// \brief From now on, an exception that nobody can catch ends the program with one line and exit
+/// code 1. TBB throws such ones when it cannot start its threads.
+/// \param path The program's own, as main() gets it.
+void endUncaughtInOneLine(const char* path);
 
 }  // namespace polemcl::apps

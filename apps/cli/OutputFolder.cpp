@@ -9,7 +9,7 @@
 #include <cstdio>
 
 #include <polemcl/core/common/Types.h>
-#include "io/file/Sync.h"
+#include "io/file/AtomicFile.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;

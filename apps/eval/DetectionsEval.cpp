@@ -1,14 +1,12 @@
 /// \file DetectionsEval.cpp
 /// \brief `pole-eval detections`: the poles of each scan against the true ones of a simulated
-/// folder (core/evaluation/DetectionEvaluation.h), visible as core/evaluation/PoleVisibility.h
-/// says. Scans and poles belong together by their times.
+/// folder (core/evaluation/DetectionEvaluation.h). Scans and poles belong together by their times.
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/DetectionEvaluation.h"
-#include "core/evaluation/PoleVisibility.h"
 #include "eval/DriveTruth.h"
 #include "eval/EvalApp.h"
 #include "eval/Figures.h"

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/RawlogActions.h"
 #include "core/common/Angles.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/common/Transform.h"
 #include "io/file/TextFile.h"
+#include "mrpt/rawlog/RawlogWriter.h"
 
 namespace polemcl::apps {
 namespace {

@@ -1,10 +1,9 @@
 /// \file MapEval.cpp
 /// \brief `pole-eval map`: scores of a pole map. `shift_x_m shift_y_m rotation_deg` say how far the
-/// map as a whole is off, see MapShift.
+/// map as a whole is off, see MapEvaluation.h.
 
 #include "core/common/Angles.h"
-#include "core/evaluation/MapShift.h"
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include "core/evaluation/MapEvaluation.h"
 #include "eval/EvalApp.h"
 #include "eval/Figures.h"
 #include "io/file/ErrorPlace.h"

@@ -8,7 +8,6 @@
 #include <random>
 
 #include <polemcl/io/data/Cloud.h>
-#include "cli/RawlogActions.h"
 #include "config/TimingComment.h"
 #include "core/common/Angles.h"
 #include "core/common/DetectionCheck.h"
@@ -23,7 +22,6 @@
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
 #include "mrpt/rawlog/GnssFixes.h"
-#include "mrpt/rawlog/GnssWriter.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 
 namespace polemcl::apps {

@@ -10,8 +10,8 @@
 #include "io/file/TextFile.h"
 #include "mrpt/live/LiveQueue.h"
 #include "mrpt/live/LiveSensors.h"
-#include "mrpt/live/RecordedEntries.h"
-#include "mrpt/rawlog/EntryStream.h"
+#include "mrpt/rawlog/EntrySource.h"
+#include "mrpt/rawlog/RawlogWriter.h"
 #include "mrpt/rawlog/ScanSource.h"
 
 namespace polemcl::apps {
@@ -70,7 +70,60 @@ class GapWatch {
   bool m_isBusy = false, m_isWarned = false;
 };
 
+/// The entries of another source, each written to a rawlog before it is handed out: in the
+/// order and with the times that the localization sees. Scans that were dropped are not among them.
+class RecordedEntries : public EntrySource {
+ public:
+  /// \param source Of observations. \throws Error when the rawlog cannot be written.
+  RecordedEntries(std::shared_ptr<EntrySource> source, const std::string& rawlog)
+      : m_source(std::move(source)), m_writer(rawlog) {}
+
+  bool next(RawlogEntry& entry) override {
+    if (!m_source->next(entry)) return false;
+    if (entry.observation) m_writer.write(*entry.observation);
+    return true;
+  }
+  void stop() override { m_source->stop(); }
+  bool isLive() const override { return m_source->isLive(); }
+  const std::string& comment() const override { return m_source->comment(); }
+  std::size_t dropped() const override { return m_source->dropped(); }
+
+  /// Gives the rawlog its name. \throws Error when a write failed.
+  void commit() { m_writer.commit(); }
+
+ private:
+  std::shared_ptr<EntrySource> m_source;
+  RawlogWriter m_writer;
+};
+
+std::atomic<bool> s_came{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set by a signal handler");
+
+void note(int) {
+  s_came = true;
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
 }  // namespace
+
+EndSignals::EndSignals() {
+  s_came = false;
+  struct sigaction action {};
+  action.sa_handler = note;
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, &m_interrupt);
+  sigaction(SIGTERM, &action, &m_terminate);
+}
+
+EndSignals::~EndSignals() {
+  sigaction(SIGINT, &m_interrupt, nullptr);
+  sigaction(SIGTERM, &m_terminate, nullptr);
+}
+
+bool EndSignals::came() {
+  return s_came;
+}
 
 LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptions& options,
                               const std::function<void(const ReadScan&)>& consume) {

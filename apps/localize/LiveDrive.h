@@ -1,7 +1,9 @@
 #pragma once
 /// \file LiveDrive.h
-/// \brief A drive that is not recorded: scans straight from the sensors. Private to the library.
+/// \brief A drive that is not recorded: scans straight from the sensors, until a signal ends it.
+/// Private to the library.
 
+#include <csignal>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -11,6 +13,22 @@
 #include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
+
+/// \brief While it lives, the first SIGINT or SIGTERM only sets a flag; a second one, of either,
+/// ends the program at once. Only one at a time.
+class EndSignals {
+ public:
+  EndSignals();
+  ~EndSignals();
+  EndSignals(const EndSignals&) = delete;
+  EndSignals& operator=(const EndSignals&) = delete;
+
+  /// \brief Whether one has come. From any thread.
+  static bool came();
+
+ private:
+  struct sigaction m_interrupt, m_terminate;
+};
 
 struct LiveDriveOptions {
   std::filesystem::path sensors;  ///< see startSensors(); also a name among the shipped ones

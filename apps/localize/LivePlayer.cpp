@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "cli/Progress.h"
+#include "report/scene/LiveMoment.h"
 #include "report/scene/PlayerPanels.h"
-#include "report/scene/ScanPoints.h"
 
 namespace polemcl::apps {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "localize/Pace.h"
-#include "report/scene/KeptMoments.h"
+#include "report/scene/LiveMoment.h"
 #include "report/scene/LiveScene.h"
 #include "report/scene/LiveWindow.h"
 #include "report/scene/Playback.h"

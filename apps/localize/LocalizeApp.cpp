@@ -15,7 +15,6 @@
 #include "core/common/Binder.h"
 #include "io/data/Trajectory.h"
 #include "io/file/ErrorPlace.h"
-#include "localize/EndSignals.h"
 #include "localize/LiveDrive.h"
 #include "localize/LocalizePlayer.h"
 #include "localize/LocalizeReport.h"

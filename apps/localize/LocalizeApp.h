@@ -66,7 +66,7 @@ struct LocalizeResult {
 /// window makes a rawlog wait; the results stay the same.
 ///
 /// With sensors, scans that come faster than they can be handled are dropped (see LiveQueue), and
-/// the drive ends with a signal (see EndSignals.h). A sensor that fails ends it as well, and so
+/// the drive ends with a signal (see LiveDrive.h). A sensor that fails ends it as well, and so
 /// does a stream that cannot be written; the error comes after the results are complete.
 ///
 /// The folder `output` gets:

@@ -1,9 +1,14 @@
 #include "localize/RunFiles.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <utility>
 
+#include <polemcl/core/common/Types.h>
 #include "cli/RunRecords.h"
 #include "core/common/Angles.h"
 #include "io/data/Trajectory.h"
@@ -15,7 +20,32 @@ namespace {
 constexpr double kLeastError = 0.5;  ///< m; true poses may be off, too
 constexpr double kMostSpreads = 5;   ///< of the pose
 
+void write(const std::filesystem::path& file, std::string_view text, std::ios::openmode mode) {
+  errno = 0;
+  std::ofstream stream(file, std::ios::binary | mode);
+  stream << text;
+  stream.close();
+  if (!stream)
+    throw Error("cannot write " + file.string() + ": " +
+                (errno != 0 ? std::strerror(errno) : "a write failed"));
+}
+
 }  // namespace
+
+GrowingFile::GrowingFile(std::filesystem::path file) : m_file(std::move(file)) {
+  write(m_file, {}, std::ios::trunc);
+}
+
+void GrowingFile::add(std::string_view text) {
+  m_collected += text;
+  if (m_collected.size() >= kPiece) flush();
+}
+
+void GrowingFile::flush() {
+  if (m_collected.empty()) return;
+  write(m_file, m_collected, std::ios::app);
+  m_collected.clear();
+}
 
 RunFiles::RunFiles(const RunFolder& folder, std::size_t run,
                    const std::vector<StampedPose2D>* truth)

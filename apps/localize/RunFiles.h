@@ -2,16 +2,36 @@
 /// \file RunFiles.h
 /// \brief The files of one run of `pole-localize`, written scan by scan. Private to the library.
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/evaluation/TrajectoryEvaluation.h"
-#include "io/file/GrowingFile.h"
 #include "localize/RunFolder.h"
 #include "mrpt/filter/LocalizationPipeline.h"
 
 namespace polemcl::apps {
+
+/// \brief The file is open only while a piece is written, so that any number of files can be in
+/// progress. It has its final name from the start: use it in folders that become visible when
+/// complete.
+class GrowingFile {
+ public:
+  static constexpr std::size_t kPiece = 4096;  ///< bytes collected before a write
+
+  /// \brief Creates an empty file. \throws Error when that fails.
+  explicit GrowingFile(std::filesystem::path file);
+  /// \brief Appends text. \throws Error when a write failed.
+  void add(std::string_view text);
+  /// \brief Writes the collected text. Text after the last flush() is lost. \throws Error as add().
+  void flush();
+
+ private:
+  std::filesystem::path m_file;
+  std::string m_collected;
+};
 
 /// \brief Errors at scans that were `ok`, against the spread of the pose.
 struct SpreadCheck {
@@ -43,8 +63,8 @@ class RunFiles {
   void addError(const PoseError& error, const LocalizationUpdate& update);
 
   std::filesystem::path m_errorsFile;
-  io::GrowingFile m_trajectory, m_covariances, m_health;
-  std::optional<io::GrowingFile> m_errors;  ///< from the first error on
+  GrowingFile m_trajectory, m_covariances, m_health;
+  std::optional<GrowingFile> m_errors;  ///< from the first error on
   std::optional<TrajectoryEvaluator> m_evaluator;
   SpreadCheck m_spreadCheck;
   std::size_t m_scan = 0;  ///< taken so far

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include "io/file/Sync.h"
+#include "io/file/AtomicFile.h"
 
 namespace polemcl::apps {
 

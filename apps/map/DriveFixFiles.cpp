@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polemcl/core/common/Types.h>
 #include "cli/Projections.h"
 #include "core/common/Statistics.h"
-#include "io/data/GnssCsv.h"
+#include "io/file/CsvTable.h"
 #include "io/file/TextFile.h"
 #include "mrpt/rawlog/GnssFixes.h"
 
@@ -67,7 +68,7 @@ std::vector<GnssFix> withoutGlitches(std::vector<GnssFix> fixes) {
 }
 
 std::vector<GnssFix> fixesOf(const MapBuildJob& job, std::size_t i) {
-  if (!job.gnss.empty()) return withoutGlitches(io::readGnssCsv(job.gnss[i]));
+  if (!job.gnss.empty()) return withoutGlitches(readGnssCsv(job.gnss[i]));
   if (!job.gnssOfRawlogs) return {};
   return withoutGlitches(readGnssFixes(job.inputs[i].string(), job.allowTruncated));
 }
@@ -92,7 +93,36 @@ void requireNear(const io::Datum& datum, const GnssFix& fix, const std::filesyst
               io::fixed(drive.path.back().time, 3) + " s)");
 }
 
+/// \throws Error when a column is beyond its limit.
+void require(bool right, const io::CsvTable& table, std::size_t row, const char* what) {
+  if (!right) throw Error(table.at(row) + what);
+}
+
 }  // namespace
+
+std::vector<GnssFix> readGnssCsv(const std::filesystem::path& file) {
+  const io::CsvTable table(file);
+  const std::size_t time = table.column("time"), latitude = table.column("latitude"),
+                    longitude = table.column("longitude"), sigma = table.column("sigma");
+  const auto x = table.find("antenna_x"), y = table.find("antenna_y");
+  std::vector<GnssFix> fixes;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    GnssFix fix;
+    fix.time = table.number(row, time);
+    fix.latitude = table.number(row, latitude);
+    fix.longitude = table.number(row, longitude);
+    fix.sigma = table.number(row, sigma);
+    if (x) fix.antenna_robot.x() = table.number(row, *x);
+    if (y) fix.antenna_robot.y() = table.number(row, *y);
+    require(isOnGlobe(fix), table, row,
+            "latitude must be within -90 and 90 deg, longitude within -180 and 180");
+    require(fix.sigma > 0, table, row, "sigma must be above 0 m");
+    require(fixes.empty() || fix.time >= fixes.back().time, table, row,
+            "time goes back; fixes must come in order");
+    fixes.push_back(fix);
+  }
+  return fixes;
+}
 
 ReadFixes readDriveFixes(const MapBuildJob& job, const std::vector<MappingSession>& drives,
                          std::size_t firstScan, std::optional<io::Datum>& datum) {

@@ -6,11 +6,18 @@
 #include <optional>
 #include <vector>
 
+#include "core/common/GnssFix.h"
 #include "core/slam/DriveFixes.h"
 #include "io/map/Datum.h"
 #include "map/MapBuildApp.h"
 
 namespace polemcl::apps {
+
+/// \brief Reads the columns `time` (s, clock of the scans), `latitude`, `longitude` (deg, WGS 84)
+/// and `sigma` (m, along each axis); `antenna_x` and `antenna_y` (m, frame of the robot) may be
+/// absent. \throws Error with file and line: as io::CsvTable; a number out of its range; times that
+/// go back.
+std::vector<GnssFix> readGnssCsv(const std::filesystem::path& file);
 
 /// \brief Fixes that were read.
 struct ReadFixes {

@@ -8,6 +8,7 @@
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/ParsedJson.h"
+#include "map/Inventory.h"
 
 namespace polemcl::apps {
 namespace {
@@ -228,8 +229,9 @@ std::string othersText(std::size_t others) {
              : "; features that are no points: " + std::to_string(others) + "; make points of them";
 }
 
-std::vector<GeoJsonPoint> readGeoJsonPoints(const std::filesystem::path& file, std::size_t& left) {
-  std::vector<GeoJsonPoint> points;
+std::vector<InventoryEntry> readGeoJsonInventory(const std::filesystem::path& file,
+                                                 std::size_t& left) {
+  std::vector<InventoryEntry> points;
   left = forEachPoint(parsed(file), file, [&](const Feature& feature) {
     points.push_back({feature.coordinates(), feature.properties(), feature.where()});
   });

@@ -2,12 +2,9 @@
 /// \file GeoJson.h
 /// \brief Pole maps for geographic programs: GeoJSON (RFC 7946) points on WGS 84.
 
-#include <Eigen/Core>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "io/map/Datum.h"
 #include "io/map/PoleMapFile.h"
@@ -38,17 +35,5 @@ io::PoleMapData readGeoJson(const std::filesystem::path& file,
 
 /// \brief The end of a message that there is no point; empty if there are no others either.
 std::string othersText(std::size_t others);
-
-/// \brief A point of other people's GeoJSON.
-struct GeoJsonPoint {
-  Eigen::Vector2d coordinates;                    ///< first two, as in the file
-  std::map<std::string, std::string> properties;  ///< texts as they are, others as JSON
-  std::string where;                              ///< "FILE: feature N: ", for messages
-};
-
-/// \brief Reads the points of a FeatureCollection with whatever properties they have.
-/// \param left Gets the number of features that are no points.
-/// \throws Error naming the feature: not GeoJSON, no numbers as coordinates.
-std::vector<GeoJsonPoint> readGeoJsonPoints(const std::filesystem::path& file, std::size_t& left);
 
 }  // namespace polemcl::apps

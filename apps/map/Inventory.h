@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +13,9 @@ namespace polemcl::apps {
 /// \brief One entry of an inventory.
 struct InventoryEntry {
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< as in the file: its coordinate system
-  std::map<std::string, std::string> properties;    ///< columns, GeoJSON properties, or OSM tags
-  std::string where;                                ///< "FILE:LINE: " or alike, for messages
+  /// Columns, OSM tags, or GeoJSON properties: texts as they are, others as JSON.
+  std::map<std::string, std::string> properties;
+  std::string where;  ///< "FILE:LINE: " or "FILE: feature N: ", for messages
 };
 
 /// \brief Reads a CSV with a header.

@@ -8,6 +8,7 @@
 
 #include "cli/Projections.h"
 #include "cli/Version.h"
+#include "core/common/KdTree2D.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
@@ -122,29 +123,19 @@ io::Datum middleOf(const std::vector<Eigen::Vector2d>& lonLats) {
   return datum;
 }
 
-/// Tells whether an earlier place lies nearer than a distance.
-class Places {
- public:
-  explicit Places(double distance) : m_distance(distance) {}
-  bool add(const Eigen::Vector2d& place) {
-    if (m_distance == 0) return true;
-    const auto column = cell(place.x()), row = cell(place.y());
-    for (auto c = column - 1; c <= column + 1; ++c)
-      for (auto r = row - 1; r <= row + 1; ++r)
-        if (const auto found = m_cells.find({c, r}); found != m_cells.end())
-          for (const Eigen::Vector2d& other : found->second)
-            if ((other - place).norm() < m_distance) return false;
-    m_cells[{column, row}].push_back(place);
-    return true;
+/// Whether each place stays: no earlier one that stays lies nearer than a distance.
+std::vector<bool> withoutDoubles(const std::vector<Eigen::Vector2d>& places, double distance) {
+  const KdTree2D tree(places);
+  std::vector<bool> stays(places.size(), true);
+  std::vector<PointHit> hits;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    tree.within(places[i].x(), places[i].y(), 1.001 * distance, hits);  // wider: rounding
+    stays[i] = std::none_of(hits.begin(), hits.end(), [&](const PointHit& hit) {
+      return hit.index < i && stays[hit.index] && (places[hit.index] - places[i]).norm() < distance;
+    });
   }
-
- private:
-  std::int64_t cell(double value) const {
-    return static_cast<std::int64_t>(std::floor(value / m_distance));
-  }
-  double m_distance;
-  std::map<std::pair<std::int64_t, std::int64_t>, std::vector<Eigen::Vector2d>> m_cells;
-};
+  return stays;
+}
 
 std::vector<Eigen::Vector2d> lonLatsOf(const std::vector<InventoryEntry>& entries,
                                        const std::string& coordinates) {
@@ -191,13 +182,13 @@ MapImportSummary importMap(const MapImportOptions& options) {
 
   io::PoleMapData map;
   const MapPlane plane(summary.datum);
-  Places places(options.merge);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const Eigen::Vector2d place =
-        io::located(entries[i].where, [&] { return plane.place(lonLats[i]); });
-    if (!places.add(place)) continue;
-    map.poles.push_back(poleAt(place, radiusOf(entries[i], options), options.sigma));
-  }
+  std::vector<Eigen::Vector2d> places;
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    places.push_back(io::located(entries[i].where, [&] { return plane.place(lonLats[i]); }));
+  const std::vector<bool> stays = withoutDoubles(places, options.merge);
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    if (stays[i])
+      map.poles.push_back(poleAt(places[i], radiusOf(entries[i], options), options.sigma));
   summary.poles = map.poles.size();
   summary.doubles = entries.size() - map.poles.size();
   io::setDatum(map.info, summary.datum, options.input.string() + ": ");

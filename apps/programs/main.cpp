@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "batch/BatchApp.h"
-#include "cli/Failure.h"
+#include "cli/Messages.h"
 #include "eval/EvalApp.h"
 #include "extract/ExtractApp.h"
 #include "import/ImportApp.h"

@@ -9,7 +9,7 @@
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
 #include "core/common/PoleIndex.h"
-#include "core/mapping/DetectionToMap.h"
+#include "core/mapping/LandmarkFusion.h"
 #include "python/Arrays.h"
 #include "python/Classes.h"
 #include "python/Lock.h"

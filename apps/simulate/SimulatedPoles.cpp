@@ -10,7 +10,6 @@
 #include <cmath>
 
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
-#include "cli/RawlogActions.h"
 #include "io/data/Trajectory.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/ErrorPlace.h"

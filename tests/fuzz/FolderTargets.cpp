@@ -5,7 +5,7 @@
 #include "io/dataset/Nclt.h"
 #include "io/dataset/ScanFolder.h"
 #include "io/dataset/ScanPoses.h"
-#include "io/rosbag/BagFiles.h"
+#include "io/rosbag/Bag.h"
 
 namespace polemcl::fuzz {
 namespace {

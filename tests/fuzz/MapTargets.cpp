@@ -1,7 +1,6 @@
 #include "core/mapping/MapSession.h"
 #include "fuzz/Fuzz.h"
 #include "io/file/Npz.h"
-#include "io/map/MapScans.h"
 #include "io/map/PoleMapFile.h"
 #include "io/map/PoleTables.h"
 #include "map/GeoJson.h"
@@ -44,7 +43,7 @@ std::vector<std::string> npzSeeds() {
 void readGeoJson(std::string_view bytes) {
   const auto file = fileOf("a.geojson", bytes);
   std::size_t left = 0;
-  apps::readGeoJsonPoints(file, left);
+  apps::readGeoJsonInventory(file, left);
   apps::readGeoJson(file, io::Datum{50.5, 7.25, 0});
 }
 

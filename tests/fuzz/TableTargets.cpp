@@ -1,6 +1,5 @@
 #include "cli/RunRecords.h"
 #include "fuzz/Fuzz.h"
-#include "io/data/GnssCsv.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/LabelledScans.h"
 #include "io/file/CsvTable.h"
@@ -8,6 +7,7 @@
 #include "io/file/TextFile.h"
 #include "io/map/Datum.h"
 #include "io/map/PoleTables.h"
+#include "map/DriveFixFiles.h"
 #include "map/Inventory.h"
 #include "map/MappingSession.h"
 #include "report/batch/PublishedResults.h"
@@ -39,7 +39,7 @@ const Readers& tables() {
       [](auto bytes) { io::readPoleCsv(fileOf("a.csv", bytes)); },
       [](auto bytes) { io::readPolePositions(fileOf("a.csv", bytes)); },
       [](auto bytes) { io::readWorldPoles(fileOf("a.csv", bytes)); },
-      [](auto bytes) { io::readGnssCsv(fileOf("a.csv", bytes)); },
+      [](auto bytes) { apps::readGnssCsv(fileOf("a.csv", bytes)); },
       [](auto bytes) { apps::readEstimates(fileOf("a.csv", bytes)); },
       [](auto bytes) { apps::HealthRecords(fileOf("a.csv", bytes)).isOk(0); },
       [](auto bytes) { report::readPublishedSessions(fileOf("a.csv", bytes)); },

@@ -3,7 +3,6 @@
 
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
-#include "cli/RawlogActions.h"
 #include "io/data/Trajectory.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "support/PoleCity.h"
@@ -50,7 +49,7 @@ class CityFiles {
       motion.mean = frames[i].motion;
       const Eigen::Vector3d moved(motion.mean.x, motion.mean.y, motion.mean.yaw);
       motion.covariance = (0.02 * moved).cwiseAbs2().asDiagonal();  // as sampled by the drive
-      writer.write(apps::makeActions(motion, poles->timestamp), poles);
+      writer.write(makeActions(motion, poles->timestamp), poles);
       truth.push_back({time(i), frames[i].truth});
     }
     writer.commit();

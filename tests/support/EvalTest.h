@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
-#include "cli/RawlogActions.h"
 #include "eval/EvalApp.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "support/StreetTest.h"
@@ -54,21 +53,20 @@ class EvalTest : public StreetTest {
   }
   /// \brief A rawlog of poles. \param poles Gives those of scan i, in the frame of the sensor.
   /// \param motion Before each scan; none: no odometry.
-  void writePoles(
-      const std::string& name, const std::vector<double>& times,
-      const std::function<Poles(std::size_t)>& poles,
-      const std::optional<polemcl::PoseWithCovariance>& motion = polemcl::apps::standstill(),
-      const mrpt::poses::CPose3D& sensorPose = {}) const {
+  void writePoles(const std::string& name, const std::vector<double>& times,
+                  const std::function<Poles(std::size_t)>& poles,
+                  const std::optional<polemcl::PoseWithCovariance>& motion = polemcl::standstill(),
+                  const mrpt::poses::CPose3D& sensorPose = {}) const {
     polemcl::RawlogWriter writer(at(name));
     for (std::size_t i = 0; i < times.size(); ++i) {
       auto scan = std::make_shared<polemcl::CObservationPoles>();
       scan->timestamp = mrpt::Clock::fromDouble(times[i]);
       scan->sensorPose = sensorPose;
       scan->poles = poles(i);
-      writer.write(motion ? polemcl::apps::makeActions(
-                                i > 0 ? *motion : polemcl::apps::standstill(), scan->timestamp)
-                          : mrpt::obs::CActionCollection(),
-                   scan);
+      writer.write(
+          motion ? polemcl::makeActions(i > 0 ? *motion : polemcl::standstill(), scan->timestamp)
+                 : mrpt::obs::CActionCollection(),
+          scan);
     }
     writer.commit();
   }

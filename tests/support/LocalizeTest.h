@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include <polemcl/mrpt/map/CPoleMap.h>
-#include "cli/RawlogActions.h"
 #include "io/data/Trajectory.h"
 #include "localize/LocalizeApp.h"
 #include "mrpt/rawlog/RawlogWriter.h"

@@ -3,7 +3,7 @@
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
-#include "core/mapping/DetectionToMap.h"
+#include "core/mapping/LandmarkFusion.h"
 #include "core/mapping/MapAccumulator.h"
 #include "io/map/PoleMapFile.h"
 #include "localizer/PointsObservation.h"

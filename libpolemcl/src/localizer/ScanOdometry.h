@@ -6,7 +6,7 @@
 #include <optional>
 
 #include <polemcl/localizer/Localizer.h>
-#include "io/data/MotionSteps.h"
+#include "io/data/PlanarMotion.h"
 #include "mrpt/rawlog/MotionOptions.h"
 #include "mrpt/rawlog/OdometryTrack.h"
 

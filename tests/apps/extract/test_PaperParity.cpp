@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "core/common/BipartiteMatching.h"
+#include "core/evaluation/MapEvaluation.h"
 #include "extract/ExtractApp.h"
 #include "import/ImportApp.h"
 #include "io/file/CsvTable.h"

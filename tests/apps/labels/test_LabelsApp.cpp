@@ -1,7 +1,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include "core/evaluation/MapEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/LabelledScans.h"
 #include "io/map/PoleMapFile.h"

@@ -14,7 +14,7 @@
 
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "io/data/Trajectory.h"
-#include "localize/EndSignals.h"
+#include "localize/LiveDrive.h"
 #include "localize/LocalizeApp.h"
 #include "support/UdpSender.h"
 #include "support/VelodynePackets.h"

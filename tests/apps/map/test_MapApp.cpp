@@ -1,11 +1,11 @@
 #include <polemcl/core/common/Types.h>
 #include "cli/RunRecords.h"
 #include "extract/ExtractApp.h"
-#include "io/data/GnssCsv.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
 #include "io/map/PoleTables.h"
+#include "map/DriveFixFiles.h"
 #include "map/MapApp.h"
 #include "map/MapBuildReport.h"
 #include "mrpt/rawlog/GnssFixes.h"
@@ -181,7 +181,7 @@ TEST_F(MapApp, PositionsFromSatellitesGiveTheDatum) {
   expectFailure(buildWithoutTruth({"--gnss", at("fixes.csv"), "--datum", "49,9"}),
                 {"fixes.csv", "111 km from the datum 49,9,0", "leave out --gnss"});
   fs::copy_file(folder / "in.rawlog", folder / "bare.rawlog");
-  const auto given = io::readGnssCsv(folder / "fixes.csv");
+  const auto given = readGnssCsv(folder / "fixes.csv");
   std::string received;
   for (const GnssFix& fix : given) received += samples::bytesOf(*gnssObservation(fix));
   writeText(folder / "in.rawlog", readText(folder / "in.rawlog") + received);

@@ -9,8 +9,6 @@
 namespace polemcl::test_trajectory_evaluation {
 namespace {
 
-using Points = std::vector<Eigen::Vector2d>;
-
 /// 1 m/s along x, a sample a second, from 0 to `last` seconds.
 std::vector<StampedPose2D> straightTruth(int last) {
   std::vector<StampedPose2D> truth;
@@ -201,57 +199,11 @@ TEST(Evaluation, RefusesTrajectoriesThatAreNone) {
     EXPECT_THROW(evaluateTrajectory(a, b, Sampling::perPose), Error) << a.size() << ' ' << b.size();
 }
 
-TEST(Evaluation, MapScoreByHand) {
-  // Two poles of the map at the first true pole, none at the second, one far from all.
-  const Points truth{{0, 0}, {10, 0}}, map{{0.5, 0}, {-0.5, 0}, {20, 0}};
-  const MapScore authors = scoreMap(truth, map, 1, false);
-  EXPECT_EQ(authors.matches, 2u);
-  EXPECT_EQ(authors.mapPoles, 3u);
-  EXPECT_EQ(authors.truthPoles, 2u);
-  EXPECT_NEAR(authors.precision, 2.0 / 3, 1e-12);
-  EXPECT_NEAR(authors.recall, 1, 1e-12);
-  EXPECT_NEAR(authors.f1, 0.8, 1e-12);
-  const MapScore oneToOne = scoreMap(truth, map, 1, true);
-  EXPECT_EQ(oneToOne.matches, 1u);
-  EXPECT_NEAR(oneToOne.precision, 1.0 / 3, 1e-12);
-  EXPECT_NEAR(oneToOne.recall, 0.5, 1e-12);
-  EXPECT_NEAR(oneToOne.f1, 0.4, 1e-12);
-  EXPECT_EQ(scoreMap(map, truth, 1, true).matches, 1u);
-  EXPECT_EQ(scoreMap(map, truth, 1, false).matches, 1u);
-  Points street;  // far more true poles than map poles, the last of them matched
-  for (int i = 0; i < 1000; ++i) street.emplace_back(10 * i, 0);
-  EXPECT_EQ(scoreMap(street, {{9990, 0}}, 1, true).matches, 1u);
-}
-
-TEST(Evaluation, TheAuthorsRecallCanExceedOne) {
-  EXPECT_NEAR(scoreMap({{0, 0}}, {{0, 0.1}, {0, 0.2}, {0, 0.3}}, 1, false).recall, 3, 1e-12);
-}
-
-TEST(Evaluation, TheRadiusIsInclusive) {
-  EXPECT_EQ(scoreMap({{0, 0}}, {{3, 4}}, 5, false).matches, 1u);
-  EXPECT_EQ(scoreMap({{0, 0}}, {{3, 4}}, std::nextafter(5.0, 0.0), false).matches, 0u);
-}
-
 TEST(Evaluation, DistanceFollowsTheTruePathRoundACorner) {
   const std::vector<StampedPose2D> truth{{0, {0, 0, 0}}, {1, {3, 0, 0}}, {3, {3, 4, 0}}};
   std::vector<PoseError> errors;
   for (const double time : {-1.0, 0.0, 0.5, 1.0, 2.0, 3.0, 9.0}) errors.push_back({time});
   EXPECT_EQ(distanceDriven(truth, errors), (std::vector<double>{0, 0, 1.5, 3, 5, 7, 7}));
-}
-
-TEST(Evaluation, NoMatchesScoreZero) {
-  const MapScore score = scoreMap({{0, 0}}, {{9, 9}}, 1, true);
-  EXPECT_EQ(score.matches, 0u);
-  EXPECT_EQ(score.f1, 0);
-}
-
-TEST(Evaluation, MapScoreRefusesWhatCannotBeScored) {
-  const Points one{{0, 0}}, bad{{std::nan(""), 0}};
-  for (const bool oneToOne : {false, true})
-    for (const auto& [truth, map] : {std::pair{Points(), one}, {one, {}}, {bad, one}, {one, bad}})
-      EXPECT_THROW(scoreMap(truth, map, 1, oneToOne), Error);
-  for (double radius : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
-    EXPECT_THROW(scoreMap(one, one, radius, false), Error) << radius;
 }
 
 }  // namespace

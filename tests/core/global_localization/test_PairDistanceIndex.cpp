@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/global_localization/PairDistanceIndex.h"
+#include "core/global_localization/PreparedMap.h"
 #include "sim/common/Random.h"
 
 namespace polemcl::test_pair_distance_index {

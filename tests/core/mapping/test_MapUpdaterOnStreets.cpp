@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include "core/evaluation/MapEvaluation.h"
 #include "core/mapping/MapUpdater.h"
 #include "sim/common/Random.h"
 #include "sim/detections/DetectionSampler.h"

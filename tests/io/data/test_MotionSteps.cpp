@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "io/data/MotionSteps.h"
+#include "io/data/PlanarMotion.h"
 
 namespace polemcl::test_motion_steps {
 

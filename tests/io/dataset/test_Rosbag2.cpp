@@ -1,7 +1,7 @@
 #include <cmath>
 #include <optional>
 
-#include "io/data/MotionSteps.h"
+#include "io/data/PlanarMotion.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/Rosbag2.h"
 #include "io/dataset/RosbagMotions.h"

@@ -11,7 +11,6 @@
 #include "io/file/Npz.h"
 #include "io/file/ReadLimits.h"
 #include "io/file/TextFile.h"
-#include "io/map/MapScans.h"
 #include "io/map/PoleMapFile.h"
 #include "support/IoFiles.h"
 #include "support/MemoryTaken.h"

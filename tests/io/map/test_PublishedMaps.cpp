@@ -1,6 +1,6 @@
 // Scores of the authors' own NCLT map, as published or recomputed by them and others.
 
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include "core/evaluation/MapEvaluation.h"
 #include "io/map/PoleTables.h"
 #include "support/TempFolder.h"
 

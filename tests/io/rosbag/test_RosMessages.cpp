@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "io/data/Trajectory.h"
-#include "io/rosbag/FrameTree.h"
+#include "io/dataset/RosbagMotions.h"
 #include "io/rosbag/RosMessages.h"
 #include "support/IoFiles.h"
 #include "support/RosBags.h"

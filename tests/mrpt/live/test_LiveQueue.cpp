@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "mrpt/live/LiveQueue.h"
-#include "mrpt/rawlog/EntryStream.h"
+#include "mrpt/rawlog/PoleSequence.h"
 #include "support/Refusal.h"
 #include "support/SequenceFiles.h"
 

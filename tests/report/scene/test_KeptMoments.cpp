@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "report/scene/KeptMoments.h"
+#include "report/scene/LiveMoment.h"
 #include "support/LiveMoments.h"
 
 namespace polemcl::report::test_kept_moments {

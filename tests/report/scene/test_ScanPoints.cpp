@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "report/scene/ScanPoints.h"
+#include "report/scene/LiveMoment.h"
 
 namespace polemcl::report::test_scan_points {
 namespace {

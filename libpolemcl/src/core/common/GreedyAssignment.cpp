@@ -2,16 +2,14 @@
 
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include <polemcl/core/common/Types.h>
 #include "core/common/KdTree2D.h"
 
 namespace polemcl {
 
-std::vector<AssignedPair> greedyAssignment(const std::vector<Eigen::Vector2d>& first,
-                                           const std::vector<Eigen::Vector2d>& second,
-                                           double radius) {
+std::vector<AssignedPair> pairsWithin(const std::vector<Eigen::Vector2d>& first,
+                                      const std::vector<Eigen::Vector2d>& second, double radius) {
   if (!(std::isfinite(radius) && radius > 0))
     throw Error("the matching radius is " + std::to_string(radius) +
                 " m; it must be finite and above 0");
@@ -26,7 +24,13 @@ std::vector<AssignedPair> greedyAssignment(const std::vector<Eigen::Vector2d>& f
       if (hit.squaredDistance <= radius * radius)
         pairs.push_back({i, hit.index, std::sqrt(hit.squaredDistance)});
   }
-  std::vector<AssignedPair> chosen = chooseClosest(std::move(pairs));
+  return pairs;
+}
+
+std::vector<AssignedPair> greedyAssignment(const std::vector<Eigen::Vector2d>& first,
+                                           const std::vector<Eigen::Vector2d>& second,
+                                           double radius) {
+  std::vector<AssignedPair> chosen = chooseClosest(pairsWithin(first, second, radius));
   std::sort(chosen.begin(), chosen.end(),
             [](const AssignedPair& a, const AssignedPair& b) { return a.first < b.first; });
   return chosen;

@@ -41,11 +41,16 @@ std::vector<Pair> chooseClosest(std::vector<Pair> candidates) {
   return chosen;
 }
 
+/// \brief All pairs of points of two sets within the radius (inclusive), by `first`, then `second`.
+/// \throws Error when a point is not finite, or the radius is not finite and positive.
+std::vector<AssignedPair> pairsWithin(const std::vector<Eigen::Vector2d>& first,
+                                      const std::vector<Eigen::Vector2d>& second, double radius);
+
 /// \brief Pairs points of two sets, each point at most once. The closest pair within the radius
 /// (inclusive) is chosen first, then the closest of the rest. Lower indices win ties.
 /// maximumMatching() gives up close pairs to get more pairs; this function never does.
 /// \return Pairs by ascending `first`.
-/// \throws Error when a point is not finite, or the radius is not finite and positive.
+/// \throws Error as pairsWithin().
 std::vector<AssignedPair> greedyAssignment(const std::vector<Eigen::Vector2d>& first,
                                            const std::vector<Eigen::Vector2d>& second,
                                            double radius);

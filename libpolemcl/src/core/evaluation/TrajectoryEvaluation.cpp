@@ -5,8 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "core/common/BipartiteMatching.h"
-#include "core/common/KdTree2D.h"
 #include "core/common/PoseInterpolation.h"
 
 namespace polemcl {
@@ -92,29 +90,6 @@ void divide(TrajectoryErrors& sums) {
   sums.posRmse = std::sqrt(sums.posRmse / n);
   sums.angMeanDeg = sums.angMeanDeg / n * 180 / M_PI;
   sums.angRmseDeg = std::sqrt(sums.angRmseDeg / n) * 180 / M_PI;
-}
-
-void checkPoles(const std::vector<Eigen::Vector2d>& poles, const std::string& name) {
-  if (poles.empty()) throw Error("the " + name + " holds no pole; there must be at least one");
-  for (std::size_t i = 0; i < poles.size(); ++i) {
-    if (poles[i].allFinite()) continue;
-    throw Error("pole " + std::to_string(i) + " of the " + name +
-                " has a coordinate that is not finite; remove it");
-  }
-}
-
-std::vector<std::vector<std::uint32_t>> edgesWithin(const std::vector<Eigen::Vector2d>& from,
-                                                    const KdTree2D& to, double radius) {
-  std::vector<std::vector<std::uint32_t>> edges;
-  std::vector<PointHit> hits;
-  for (const Eigen::Vector2d& p : from) {
-    to.within(p.x(), p.y(), 1.001 * radius, hits);  // wider, as the tree leaves the border out
-    edges.emplace_back();
-    for (const PointHit& hit : hits) {
-      if (hit.squaredDistance <= radius * radius) edges.back().push_back(hit.index);
-    }
-  }
-  return edges;
 }
 
 }  // namespace
@@ -204,32 +179,6 @@ std::vector<double> distanceDriven(const std::vector<StampedPose2D>& truth,
     distances.push_back(along[i - 1] + share * (along[i] - along[i - 1]));
   }
   return distances;
-}
-
-MapScore scoreMap(const std::vector<Eigen::Vector2d>& truth,
-                  const std::vector<Eigen::Vector2d>& map, double radius, bool oneToOne) {
-  checkPoles(truth, "true map");
-  checkPoles(map, "map");
-  if (!(std::isfinite(radius) && radius > 0)) {
-    throw Error("the matching radius is " + std::to_string(radius) +
-                " m; it must be finite and above 0");
-  }
-  const auto edges = edgesWithin(map, KdTree2D(truth), radius);
-  const auto matched = [](const std::vector<std::uint32_t>& candidates) {
-    return !candidates.empty();
-  };
-  MapScore score;
-  score.mapPoles = map.size();
-  score.truthPoles = truth.size();
-  score.matches =
-      oneToOne ? maximumMatching(edges, truth.size())
-               : static_cast<std::size_t>(std::count_if(edges.begin(), edges.end(), matched));
-  const double matches = static_cast<double>(score.matches);
-  score.precision = matches / static_cast<double>(map.size());
-  score.recall = matches / static_cast<double>(truth.size());
-  if (score.matches > 0)
-    score.f1 = 2 * score.precision * score.recall / (score.precision + score.recall);
-  return score;
 }
 
 }  // namespace polemcl

@@ -1,6 +1,6 @@
 #pragma once
 /// \file TrajectoryEvaluation.h
-/// \brief Trajectory errors, and precision / recall / F1 of pole maps, in the authors' ways.
+/// \brief Trajectory errors, in the authors' ways.
 
 #include <Eigen/Core>
 #include <optional>
@@ -80,20 +80,5 @@ class POLEMCL_EXPORT TrajectoryEvaluator {
   StampedPose2D m_first, m_last;
   std::size_t m_estimates = 0;
 };
-
-struct MapScore {
-  std::size_t mapPoles = 0, truthPoles = 0, matches = 0;
-  double precision = 0;  ///< matches / mapPoles
-  double recall = 0;     ///< matches / truthPoles
-  double f1 = 0;         ///< harmonic mean of the two; 0 without matches
-};
-/// \brief Matches map poles to truth poles within `radius` (inclusive), m.
-/// \param oneToOne false: TP = map poles whose nearest truth pole lies within the radius, for both
-///        figures (the authors' way; recall can exceed 1). true: maximum bipartite matching.
-/// \throws Error when either set is empty or holds a pole that is not finite, or the radius is not
-///         finite and positive.
-POLEMCL_EXPORT MapScore scoreMap(const std::vector<Eigen::Vector2d>& truth,
-                                 const std::vector<Eigen::Vector2d>& map, double radius,
-                                 bool oneToOne);
 
 }  // namespace polemcl

@@ -3,15 +3,48 @@
 /// \brief A map with the search structures that the steps of the global search share. Private to
 /// the library; see GlobalLocalizer.h.
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
+#include <polemcl/core/common/Types.h>
 #include "core/common/KdTree2D.h"
 #include "core/common/PoleGrid.h"
 #include "core/common/PoleIndex.h"
 #include "core/global_localization/GlobalLocalizer.h"
-#include "core/global_localization/PairDistanceIndex.h"
 
 namespace polemcl {
+
+/// \brief Built once, never changed, safe to share between threads.
+///
+/// Memory is bounded by `poles · neighbours` pairs of 12 bytes. In crowds (parks) each pole keeps
+/// only that many of its neighbours, evenly taken from near to far, so that no distance is lost.
+class PairDistanceIndex {
+ public:
+  struct Pair {
+    float distance;       ///< m
+    std::uint32_t first;  ///< into the poles given, first < second
+    std::uint32_t second;
+  };
+  /// \param poles Centres, map frame, m; finite.
+  /// \param minDistance, maxDistance Pairs outside are not kept, m; 0 < min < max.
+  /// \param neighbours Most partners a pole asks for (it may be asked for by more).
+  PairDistanceIndex(const std::vector<Eigen::Vector2d>& poles, double minDistance,
+                    double maxDistance, std::size_t neighbours = 48);
+
+  /// \brief All pairs with low <= distance <= high, as [begin, end) of memory that belongs to this.
+  struct Range {
+    const Pair* begin;
+    const Pair* end;
+    std::size_t size() const { return static_cast<std::size_t>(end - begin); }
+  };
+  Range between(double low, double high) const&;
+  Range between(double low, double high) const&& = delete;  // it would point into what is gone
+  std::size_t size() const { return m_pairs.size(); }
+
+ private:
+  std::vector<Pair> m_pairs;  ///< by distance, then first, then second
+};
 
 /// \brief Built once, never changed, safe to share between threads.
 struct PreparedMap {

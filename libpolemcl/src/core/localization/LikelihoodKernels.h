@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <polemcl/core/localization/PoleLikelihood.h>
-#include "core/common/PrincipalAxes.h"
+#include "core/common/Covariance.h"
 
 namespace polemcl {
 

@@ -4,7 +4,7 @@
 
 #include "core/common/Binder.h"
 #include "core/common/Transform.h"
-#include "core/mapping/BoxMerging.h"
+#include "core/mapping/ObservationClustering.h"
 
 namespace polemcl {
 

@@ -9,33 +9,22 @@
 namespace polemcl {
 namespace {
 
-constexpr double kComparedTime = 1;      // longest time over which scans are compared, s
-constexpr double kLags[] = {0, 0.3, 1};  // of the window: the scans compared with
 constexpr double kScaleTolerance =
     0.05;                           // tolerated error of the odometry, as a share of the distance
 constexpr double kTolerance = 0.1;  // tolerated error of any motion, m
 constexpr double kTurnTolerance = 0.02;  // tolerated error of any turn, rad
-constexpr double kSigmas = 5;  // least difference beyond that contradicts, standard deviations
-constexpr int kMinPairs = 3;   // least number of poles in common that contradict
-constexpr int kSurePairs = 5;  // pairs that decide at once; fewer need two scans running
-constexpr double kMinShare =
-    0.4;                         // least share of the poles of the scan with fewer that are paired
+constexpr double kSigmas = 5;    // least difference beyond that contradicts, standard deviations
 constexpr double kMargin = 1.5;  // least lead of the poles' motion over the odometry's, in pairs
-constexpr double kStandingShare =
-    0.75;  // least share of the poles that stand, where the vehicle does
 constexpr double kLeastChance = 1e-3;   // that none of the poles is seen again; less contradicts
 constexpr double kForget = 0.98;        // weight of earlier scans in the share seen again
 constexpr double kMostSeenAgain = 0.8;  // of that share: one bus hides several poles
 constexpr double kSettle = 0.5;         // time of agreement until the odometry is believed again, s
-constexpr double kHold = 5;       // time for which the last speed is kept without enough poles, s
-constexpr double kMaxSpeed = 40;  // greatest speed of the vehicle, m/s
-constexpr double kMaxTurnRate = 1.5;     // greatest turn rate, rad/s
-constexpr double kMostAcceleration = 6;  // of the vehicle, m/s²
-constexpr double kTimeError = 0.04;      // of the time between two scans, s
-constexpr double kLeastSigma = 0.02;     // of a motion by poles, m
-constexpr double kLeastTurn = 0.002;     // rad
-constexpr double kMostVariance = 1;      // m²; above it, the motion by poles is too uncertain
-constexpr double kMostDoubt = 5;         // m
+constexpr double kHold = 5;  // time for which the last speed is kept without enough poles, s
+constexpr double kTimeError = 0.04;   // of the time between two scans, s
+constexpr double kLeastSigma = 0.02;  // of a motion by poles, m
+constexpr double kLeastTurn = 0.002;  // rad
+constexpr double kMostVariance = 1;   // m²; above it, the motion by poles is too uncertain
+constexpr double kMostDoubt = 5;      // m
 
 std::vector<PoleDetection> usable(const std::vector<PoleDetection>& poles) {
   std::vector<PoleDetection> result;
@@ -155,26 +144,20 @@ std::vector<std::size_t> OdometryMonitor::chosen(double time) const {
 ScanRegistration OdometryMonitor::align(const Reference& reference, const Reference& now,
                                         bool search) const {
   const Reference& last = m_past.back();
-  const double seconds = now.time - reference.time;
   const Pose2D coasted = compose(last.used, coast(now.time - last.time));
-  ScanRegistration best = refineMotion(reference.poles, now.poles,
-                                       relative(reference.used, now.used), RegistrationOptions());
+  ScanRegistration best =
+      refineMotion(reference.poles, now.poles, relative(reference.used, now.used), {});
   const auto keep = [&](const ScanRegistration& other) {
     if (other.score > best.score + 0.5) best = other;
   };
-  keep(refineMotion(reference.poles, now.poles, relative(reference.seen, now.seen),
-                    RegistrationOptions()));
+  keep(refineMotion(reference.poles, now.poles, relative(reference.seen, now.seen), {}));
   const double possible =
       kMinShare * static_cast<double>(std::min(reference.poles.size(), now.poles.size()));
   const auto poor = [&] { return best.pairs < kMinPairs || best.score < possible; };
-  if (poor())
-    keep(refineMotion(reference.poles, now.poles, relative(reference.used, coasted),
-                      RegistrationOptions()));
+  if (poor()) keep(refineMotion(reference.poles, now.poles, relative(reference.used, coasted), {}));
   if (!search || !poor()) return best;
-  RegistrationOptions wide = RegistrationOptions();
-  wide.maxMetres = kMaxSpeed * seconds;
-  wide.maxRadians = kMaxTurnRate * seconds + 0.05;
-  keep(searchMotion(reference.poles, now.poles, relative(reference.used, coasted), wide));
+  keep(searchMotion(reference.poles, now.poles, relative(reference.used, coasted),
+                    searchLimits(now.time - reference.time)));
   return best;
 }
 
@@ -201,11 +184,10 @@ double OdometryMonitor::beyondOdometry(const Reference& reference, const Referen
 /// The odometry with the pairs that support it, corrected by them within its tolerance.
 ScanRegistration OdometryMonitor::allowed(const Reference& reference, const Reference& now) {
   const Pose2D odometry = relative(reference.odometry, now.odometry);
-  ScanRegistration corrected =
-      refineMotion(reference.poles, now.poles, odometry, RegistrationOptions());
+  ScanRegistration corrected = refineMotion(reference.poles, now.poles, odometry, {});
   if (corrected.pairs >= 2 && beyondOdometry(reference, now, corrected) <= kSigmas)
     return corrected;
-  return judgeMotion(reference.poles, now.poles, odometry, RegistrationOptions());
+  return judgeMotion(reference.poles, now.poles, odometry, {});
 }
 
 OdometryMonitor::Finding OdometryMonitor::compare(const Reference& reference, const Reference& now,

@@ -3,8 +3,8 @@
 
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include "core/common/Binder.h"
+#include "core/common/Covariance.h"
 #include "core/common/PoleIndex.h"
-#include "core/common/PrincipalAxes.h"
 #include "core/localization/LikelihoodKernels.h"
 
 namespace polemcl {

@@ -111,6 +111,14 @@ double meanVariance(const PoleDetection& pole, double sigma) {
 
 }  // namespace
 
+RegistrationOptions searchLimits(double seconds) {
+  constexpr double kMaxSpeed = 40, kMaxTurnRate = 1.5;  // m/s, rad/s
+  RegistrationOptions options;
+  options.maxMetres = kMaxSpeed * seconds;
+  options.maxRadians = kMaxTurnRate * seconds + 0.05;
+  return options;
+}
+
 ScanRegistration judgeMotion(const std::vector<PoleDetection>& before,
                              const std::vector<PoleDetection>& after, const Pose2D& motion,
                              const RegistrationOptions& options) {

@@ -21,6 +21,19 @@ struct RegistrationOptions {
   double minBaseline = 3;    ///< of the pole pairs that give a candidate, m
 };
 
+/// \name Limits by which poles judge the motions that the odometry states
+/// @{
+constexpr double kComparedTime = 1;      ///< longest time over which scans are compared, s
+constexpr double kLags[] = {0, 0.3, 1};  ///< of this time: the scans compared with
+constexpr int kMinPairs = 3;             ///< least number of poles in common that contradict
+constexpr int kSurePairs = 5;            ///< pairs that decide, whatever the speed before
+constexpr double kMinShare = 0.4;  ///< least share of the poles of the scan with fewer, paired
+constexpr double kStandingShare = 0.75;  ///< least share that stands, where the vehicle does
+constexpr double kMostAcceleration = 6;  ///< of a vehicle, m/s²
+/// \brief Limits of a search over a time, by what a vehicle can do: 40 m/s, 1.5 rad/s.
+RegistrationOptions searchLimits(double seconds);
+/// @}
+
 /// \brief A motion and the pairs of poles that bear it out.
 struct POLEMCL_EXPORT ScanRegistration {
   /// Motion of the robot from the first scan to the second, in the first's robot frame.

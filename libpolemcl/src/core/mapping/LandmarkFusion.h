@@ -1,7 +1,9 @@
 #pragma once
 /// \file LandmarkFusion.h
-/// \brief Several observations of one pole -> one pole.
+/// \brief Detections at a known pose -> observations in the map frame; several of one pole -> one
+/// pole.
 
+#include <string>
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
@@ -32,5 +34,24 @@ Eigen::Vector2d fusedCentre(const std::vector<LandmarkObservation>& observations
 /// confidence the mean; count the number of observations.
 MapPole fuse(const std::vector<LandmarkObservation>& observations,
              const std::vector<std::uint32_t>& members);
+
+/// \brief How far poses of scans can be trusted.
+struct PoseTrust {
+  double sigma = 0;         ///< of the position, m
+  double headingSigma = 0;  ///< rad
+  /// Covariance of this pose beyond that: x, y, yaw; m², m·rad, rad².
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+/// \brief A detection in the map frame, made less certain by what the scan's pose is not known to.
+/// \param pole Robot frame. \param pose Robot in the map frame. \param scan Number of the scan.
+LandmarkObservation landmarkObservation(const PoleDetection& pole, const Pose2D& pose,
+                                        std::uint32_t scan, const PoseTrust& trust);
+
+/// \throws Error on a pose or detection that is not finite, a confidence outside [0, 1], or a
+///         covariance that is not symmetric positive semidefinite, naming the detection.
+/// \param where Names the scan, e.g. "scan 12".
+void checkScan(const Pose2D& pose, const std::vector<PoleDetection>& poles,
+               const std::string& where);
 
 }  // namespace polemcl

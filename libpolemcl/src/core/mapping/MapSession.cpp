@@ -9,7 +9,7 @@
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
 #include "core/extraction/VisibilityRange.h"
-#include "core/mapping/DetectionToMap.h"
+#include "core/mapping/LandmarkFusion.h"
 
 namespace polemcl {
 namespace {

@@ -17,9 +17,9 @@
 namespace polemcl {
 namespace {
 
-constexpr double kPresent = 0.9;  // a pole enters the map from this probability on
-constexpr double kAbsent = 0.4;   // a pole leaves the map below this; it is remembered
-constexpr double kForget = 0.05;  // a pole is forgotten below this probability
+constexpr double kPresent = 0.9;     // a pole enters the map from this probability on
+constexpr double kAbsent = 0.4;      // a pole leaves the map below this; it is remembered
+constexpr double kForgotten = 0.05;  // a pole is forgotten below this probability
 /// A missed pole that is nearer than this to a new one has been moved there, m. It leaves no ghost.
 constexpr double kGhost = 1.5;
 /// Scans whose position has a greater standard deviation along any axis change nothing, m.
@@ -240,7 +240,7 @@ void Update::decidePresence() {
     m_counts.entered += record.present && !was && !m_gone[i];
     m_counts.left += was && !record.present && !m_gone[i];
     if (m_gone[i]) continue;
-    m_gone[i] = existence < kForget || record.pole.count == 0;
+    m_gone[i] = existence < kForgotten || record.pole.count == 0;
     m_counts.forgotten += m_gone[i];
     m_counts.candidates += !record.present && !m_gone[i];
   }

@@ -5,8 +5,6 @@
 #include <polemcl/core/mapping/PoleMapBuilder.h>
 #include "core/common/Binder.h"
 #include "core/common/PathSections.h"
-#include "core/mapping/BoxMerging.h"
-#include "core/mapping/DetectionToMap.h"
 #include "core/mapping/LandmarkFusion.h"
 #include "core/mapping/ObservationClustering.h"
 

@@ -8,7 +8,7 @@
 #include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
-#include "core/mapping/DetectionToMap.h"
+#include "core/mapping/LandmarkFusion.h"
 #include "core/mapping/MapSession.h"
 
 namespace polemcl {
@@ -19,7 +19,7 @@ constexpr double kGates[] = {1.5, 1.0, 0.75, 0.5, 0.5, 0.5};
 constexpr int kRoundsWide = 3;           ///< rounds in which the gate widens the covariances
 constexpr double kHeadingSigma = 0.007;  ///< of the errors of a session's headings, rad
 /// Distance over which the errors of a session are correlated: their correlation falls by e, m.
-constexpr double kLength = 100;
+constexpr double kAlikeLength = 100;
 constexpr double kPiece = 50;  ///< m of path
 /// Least number of map poles seen within a piece. Pieces with fewer follow the pieces beside them.
 constexpr std::size_t kMinPoles = 5;
@@ -68,7 +68,7 @@ class Alignment {
   Estimate measured(const Estimate& predicted, std::size_t scan) const;
   /// Correlation of the errors of a scan and of the one before.
   double correlation(std::size_t scan) const {
-    return std::exp((m_along[scan - 1] - m_along[scan]) / kLength);
+    return std::exp((m_along[scan - 1] - m_along[scan]) / kAlikeLength);
   }
 
   const std::vector<SessionScan>& m_scans;

@@ -11,28 +11,20 @@
 namespace polemcl {
 namespace {
 
-constexpr double kWindow = 1;                    // s, longest time over which scans are compared
-constexpr double kLongestCoast = 2;              // s without poles that tell the motion
-constexpr double kMaxSpeed = 40;                 // m/s
-constexpr double kMaxTurnRate = 1.5;             // rad/s
-constexpr int kMinPairsNear = 2, kMinPairs = 3;  // near the motion before; searched
-constexpr double kMinShare = 0.4;                // of the poles of the scan with fewer, paired
+constexpr double kLongestCoast = 2;  // s without poles that tell the motion
+constexpr int kMinPairsNear = 2;     // near the motion before; searched: kMinPairs
 constexpr double kSigma = 0.05, kShare = 0.05, kTurnSigma = 0.01;  // m, of the way, rad
 constexpr double kAcceleration = 3, kTurnAcceleration = 0.5;       // m/s², rad/s², while coasting
-constexpr double kLags[] = {0, 0.3, 1};  // of the window: the scans compared with
 /// A motion of the odometry is wrong if another motion meets these conditions. It has at least this
 /// number of pairs:
 constexpr int kPairsAgainst = 4;
 /// Its score is greater by this factor, so that poles seen for the first time do not decide:
 constexpr double kClearly = 1.5;
-/// It is a change of speed that a vehicle makes, or has more pairs:
-constexpr double kMostAcceleration = 6;  // m/s²
-constexpr int kSurePairs = 5;
-/// Poles that stay where they are seen from the vehicle may move along with it. If it stands, at
-/// least this share of the poles do, and it was slow enough to stop:
-constexpr double kStandingShare = 0.75;
-/// It differs by more than the odometry of a healthy vehicle errs: m and rad, and share of both;
-/// and by more than three standard deviations that the odometry states, where these are small:
+/// It is a change of speed that a vehicle makes (kMostAcceleration), or has more pairs
+/// (kSurePairs). Poles that stay where they are seen from the vehicle may move along with it. If it
+/// stands, at least kStandingShare of the poles do, and it was slow enough to stop. It differs by
+/// more than the odometry of a healthy vehicle errs: m and rad, and share of both; and by more than
+/// three standard deviations that the odometry states, where these are small:
 constexpr double kSlip = 0.3, kTurnSlip = 0.05, kSlipShare = 0.1;
 constexpr double kStated = 3, kMostStated = 0.5, kMostTurnStated = 0.2;  // sigmas, m, rad
 /// Share of these limits until odometry and poles agree again over a whole window:
@@ -111,7 +103,7 @@ class MotionFiller {
     std::vector<std::size_t> result;
     for (const double lag : kLags) {
       std::size_t before = i - 1;
-      while (before > 0 && secondsFrom(before - 1, i) <= lag * kWindow + 1e-6) --before;
+      while (before > 0 && secondsFrom(before - 1, i) <= lag * kComparedTime + 1e-6) --before;
       if (result.empty() || result.back() != before) result.push_back(before);
     }
     return result;
@@ -130,7 +122,7 @@ class MotionFiller {
     ScanRegistration found = refineMotion(then, now, told, {});
     if (!isEnough(found, then, now, kPairsAgainst))
       found = isSeen ? refineMotion(then, now, motionAfter(velocity, seconds), {})
-                     : searchMotion(then, now, {}, limitsOver(seconds));
+                     : searchMotion(then, now, {}, searchLimits(seconds));
     if (!isEnough(found, then, now, kPairsAgainst)) return {};
     if (!isSlip(told, found.motion, m_spent[i] - m_spent[before]))
       return {Verdict::borneOut, found.motion};
@@ -245,7 +237,7 @@ class MotionFiller {
     const Pose2D expected = compose(m_poses[i - 1], guess);
     for (std::size_t before = i; before-- > 0;) {
       const double seconds = m_scans[i].time - m_scans[before].time;
-      if (before + 1 < i && seconds > kWindow) break;
+      if (before + 1 < i && seconds > kComparedTime) break;
       const auto found = align(m_poles[before], now, relative(m_poses[before], expected), seconds);
       if (found) return FoundPose{compose(m_poses[before], found->motion), found->pairs, before};
     }
@@ -259,7 +251,7 @@ class MotionFiller {
       const ScanRegistration near = refineMotion(before, now, guess, {});
       if (isEnough(near, before, now, kMinPairsNear)) return near;
     }
-    const ScanRegistration found = searchMotion(before, now, guess, limitsOver(seconds));
+    const ScanRegistration found = searchMotion(before, now, guess, searchLimits(seconds));
     return isEnough(found, before, now, kMinPairs) ? std::optional(found) : std::nullopt;
   }
 
@@ -267,13 +259,6 @@ class MotionFiller {
                        const std::vector<PoleDetection>& now, int pairs, double share = kMinShare) {
     const auto fewer = static_cast<double>(std::min(before.size(), now.size()));
     return found.pairs >= pairs && found.score >= share * fewer;
-  }
-
-  static RegistrationOptions limitsOver(double seconds) {
-    RegistrationOptions options;
-    options.maxMetres = kMaxSpeed * seconds;
-    options.maxRadians = kMaxTurnRate * seconds + 0.05;
-    return options;
   }
 
   static Eigen::Matrix3d covarianceOf(const Pose2D& motion, double coasted) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <polemcl/io/data/Cloud.h>
-#include "core/evaluation/PoleVisibility.h"
+#include "core/evaluation/DetectionEvaluation.h"
 
 namespace polemcl::io {
 

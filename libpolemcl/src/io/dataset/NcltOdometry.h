@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "io/data/MotionSteps.h"
 #include "io/data/PlanarMotion.h"
 #include "io/data/TrackSampler.h"
 #include "io/file/TextFile.h"

@@ -8,7 +8,6 @@
 #include "io/dataset/RosbagMotions.h"
 #include "io/file/TextFile.h"
 #include "io/rosbag/Bag.h"
-#include "io/rosbag/FrameTree.h"
 #include "io/rosbag/RosMessages.h"
 
 namespace polemcl::io {

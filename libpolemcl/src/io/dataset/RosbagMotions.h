@@ -2,14 +2,37 @@
 /// \file RosbagMotions.h
 /// \brief Motions between the scans of a ROS 2 bag: odometry, and the gyroscope of an IMU.
 
+#include <Eigen/Geometry>
+#include <map>
 #include <optional>
 #include <string>
 
 #include "io/dataset/ScanFolder.h"
 #include "io/rosbag/Bag.h"
-#include "io/rosbag/FrameTree.h"
 
 namespace polemcl::io {
+
+/// \brief Frames, each with its pose in its parent.
+class FrameTree {
+ public:
+  /// \brief Sets the pose of a frame; a later one replaces the earlier one.
+  void add(const std::string& parent, const std::string& child,
+           const Eigen::Isometry3d& T_parent_child);
+
+  /// \brief The pose of `frame` in `base`, m; identity if both are one. \return Nothing if they are
+  /// not connected.
+  std::optional<Eigen::Isometry3d> find(const std::string& base, const std::string& frame) const;
+
+ private:
+  struct Link {
+    std::string parent;
+    Eigen::Isometry3d T_parent_child;
+  };
+  /// The frames above one and itself, with its pose in each of them.
+  std::map<std::string, Eigen::Isometry3d> above(const std::string& frame) const;
+
+  std::map<std::string, Link> m_links;  ///< by the name of the child
+};
 
 /// \brief Sets the motions between the scans.
 ///

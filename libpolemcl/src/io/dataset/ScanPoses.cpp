@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "io/data/MotionSteps.h"
+#include "io/data/PlanarMotion.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 

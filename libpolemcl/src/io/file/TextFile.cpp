@@ -89,12 +89,14 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::vector<std::string> wordsOf(std::string_view text) {
+  constexpr const char* kWhite = " \t\r\n\v\f";
   std::vector<std::string> words;
-  while (!(text = trimmed(text)).empty()) {
-    words.emplace_back(text.substr(0, text.find_first_of(" \t\r")));
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(kWhite), text.size()));
+    if (text.empty()) return words;
+    words.emplace_back(text.substr(0, text.find_first_of(kWhite)));
     text.remove_prefix(words.back().size());
   }
-  return words;
 }
 
 std::vector<std::string> readLines(const std::filesystem::path& file) {

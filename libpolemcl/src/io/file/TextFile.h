@@ -105,7 +105,7 @@ std::size_t characterLength(std::string_view text, std::size_t at);
 /// \brief The text without spaces, tabs and carriage returns at its ends.
 std::string_view trimmed(std::string_view text);
 
-/// \brief The words of a text, which spaces, tabs and carriage returns separate.
+/// \brief The words of a text, which white space separates.
 std::vector<std::string> wordsOf(std::string_view text);
 /// \brief A list of the texts: "a, b".
 template <class Texts>

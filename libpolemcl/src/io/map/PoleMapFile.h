@@ -11,7 +11,17 @@
 ///   first seen, last seen (s since 1970, 0 = not known); uint32 seen, missed. Later versions may
 ///   append fields to the record; readers use the fields they know and skip the rest.
 /// - `CAND` (optional): as `POLE`, always with histories: poles that are not on the map.
-/// - `SCAN` (optional): the scans from which the map was made, see MapScans.h.
+/// - `SCAN` (optional): the scans from which the map was made, so that sessions can be added later:
+///   uint64 size, followed by deflated data (zlib) with that uncompressed size:
+///   - float64 unvisited (m), uint32 number of sessions
+///   - per session: text name (uint32 length, bytes), uint64 number of scans
+///   - per scan: float64 time, x, y, yaw, uint32 used
+///   - per scan with used = 1: float64 x, y, yaw of the sensor in the robot frame; uint32 number of
+///     detections; uint32 number of visibility ranges after the detections, each float32
+///   - per detection: float64 x, y, radius, bottom, top, confidence, covariance xx, xy, yx, yy,
+///     uint32 points
+///   - not by 1.0.0, per session: uint64 number of covariances (0, or that of its scans), each
+///     float64 xx, xy, xyaw, yy, yyaw, yawyaw
 ///
 /// The version changes only when this scheme is not enough. Programs that do not know histories can
 /// read these maps, and they correctly ignore the candidates.
@@ -20,15 +30,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
-#include "core/mapping/MapUpdater.h"
-
-namespace polemcl {
-struct AddedSessions;
-}
+#include "core/mapping/MapAccumulator.h"
 
 namespace polemcl::io {
 
@@ -65,5 +72,12 @@ POLEMCL_EXPORT void writePoleMap(const std::filesystem::path& file, const PoleMa
 ///         written by a newer version, or holds poles that writePoleMap() rejects.
 POLEMCL_EXPORT PoleMapData readPoleMap(const std::filesystem::path& file,
                                        std::optional<AddedSessions>* scans = nullptr);
+
+/// \brief Packs the content of the chunk; equal sessions give equal bytes.
+std::string packMapScans(const AddedSessions& added);
+
+/// \brief Inverse of packMapScans(), exact to the last bit. \param where Prefix of error messages.
+/// \throws Error when the content is damaged.
+AddedSessions unpackMapScans(std::string_view content, const std::string& where);
 
 }  // namespace polemcl::io

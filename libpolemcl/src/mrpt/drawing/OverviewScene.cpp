@@ -5,7 +5,7 @@
 
 #include <polemcl/mrpt/common/Compatibility.h>
 #include "core/common/Angles.h"
-#include "core/common/PrincipalAxes.h"
+#include "core/common/Covariance.h"
 #include "core/common/TickStep.h"
 #include "io/file/TextFile.h"
 

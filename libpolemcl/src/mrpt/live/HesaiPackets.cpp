@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include <polemcl/core/common/Types.h>
-#include "mrpt/live/PacketBytes.h"
 
 namespace polemcl {
 

@@ -7,7 +7,16 @@
 #include <string_view>
 #include <vector>
 
+#include "io/file/Bytes.h"
+
 namespace polemcl {
+
+/// \brief A number in a packet, low byte first. \param place Of its first byte. The packet must be
+/// long enough.
+template <class Number>
+Number numberAt(std::string_view packet, std::size_t place) {
+  return io::loadLittleEndian<Number>(packet.data() + place);
+}
 
 struct LidarPoints {
   std::vector<float> x, y, z;  ///< frame of the LiDAR, m

@@ -11,7 +11,6 @@
 
 #include <polemcl/core/common/Types.h>
 #include "io/file/ParsedJson.h"
-#include "mrpt/live/PacketBytes.h"
 
 namespace polemcl {
 namespace {

@@ -12,7 +12,7 @@
 #include <map>
 
 #include "mrpt/observation/ScanFusion.h"
-#include "mrpt/rawlog/EntryStream.h"
+#include "mrpt/rawlog/EntrySource.h"
 #include "mrpt/rawlog/ScanSource.h"
 
 namespace polemcl {

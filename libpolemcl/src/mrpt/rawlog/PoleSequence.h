@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -22,6 +23,8 @@
 #include "mrpt/rawlog/VehicleOptions.h"
 
 namespace polemcl {
+
+class EntrySource;
 
 /// \brief Clock for measuring latencies.
 using ScanClock = std::chrono::steady_clock;
@@ -137,6 +140,16 @@ using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///         of SequenceOptions::vehicle is not in the rawlog. Exceptions of `consume` are passed on.
 POLEMCL_EXPORT SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
                                           const std::function<void(const ReadScan&)>& consume);
+
+/// \brief As streamPoles() of a rawlog. Scans of sensors have the time of their arrival; one
+/// without odometry at its time is left out, and the motion goes on to the next.
+/// \param name The source, for messages.
+/// \param options `pace`, `allowTruncated` and `follow` have no effect on sensors.
+/// \return For sensors also why the drive ended, after its first scan: `failure`.
+/// \throws Error as streamPoles(); when no odometry came with many scans of sensors.
+SequenceCounts streamPoles(std::shared_ptr<EntrySource> entries, const std::string& name,
+                           const SequenceOptions& options,
+                           const std::function<void(const ReadScan&)>& consume);
 
 /// \brief Reduces a scan to what map and filter need. \param scan From streamPoles().
 POLEMCL_EXPORT PoleScan frameOf(const ReadScan& scan);

@@ -3,14 +3,15 @@
 #include <mrpt/io/CStream.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservationComment.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/serialization/CArchive.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include <polemcl/core/common/Types.h>
 
 namespace polemcl {
-
 namespace {
 
 /// MRPT's stream interface to a stream of the standard library.
@@ -51,6 +52,25 @@ void requireSurvives(const mrpt::obs::CActionCollection& actions) {
 
 }  // namespace
 
+mrpt::obs::CActionCollection makeActions(const std::optional<PoseWithCovariance>& motion,
+                                         const mrpt::Clock::time_point& stamp) {
+  mrpt::obs::CActionCollection collection;
+  if (!motion) return collection;
+  mrpt::obs::CActionRobotMovement2D movement;
+  movement.timestamp = stamp;
+  movement.estimationMethod = mrpt::obs::CActionRobotMovement2D::emScan2DMatching;
+  const auto& mean = motion->mean;
+  movement.poseChange =
+      mrpt::poses::CPosePDFGaussian::Create(mrpt::poses::CPose2D(mean.x, mean.y, mean.yaw),
+                                            mrpt::math::CMatrixDouble33(motion->covariance));
+  collection.insert(movement);
+  return collection;
+}
+
+PoseWithCovariance standstill() {
+  return {Pose2D{}, io::floorCovariance()};
+}
+
 RawlogWriter::RawlogWriter(const std::string& path) : m_file(path) {}
 
 void RawlogWriter::writeObject(const mrpt::serialization::CSerializable& object) {
@@ -74,6 +94,19 @@ void RawlogWriter::write(const mrpt::obs::CActionCollection& action,
   mrpt::obs::CSensoryFrame frame;
   frame.insert(observation);
   writeObject(frame);
+}
+
+GnssWriter::GnssWriter(RawlogWriter& rawlog,
+                       std::vector<mrpt::obs::CObservationGPS::Ptr> observations)
+    : m_rawlog(rawlog), m_observations(std::move(observations)) {}
+
+void GnssWriter::writeBefore(mrpt::system::TTimeStamp scan) {
+  while (m_next < m_observations.size() && m_observations[m_next]->timestamp < scan)
+    m_rawlog.write(*m_observations[m_next++]);
+}
+
+void GnssWriter::writeRest() {
+  while (m_next < m_observations.size()) m_rawlog.write(*m_observations[m_next++]);
 }
 
 }  // namespace polemcl

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include "core/evaluation/MapEvaluation.h"
 
 namespace polemcl::report {
 

@@ -8,7 +8,6 @@
 
 #include "core/common/Angles.h"
 #include "core/common/Covariance.h"
-#include "core/common/PrincipalAxes.h"
 #include "core/common/TickStep.h"
 #include "report/picture/MapView.h"
 #include "report/scene/LiveObjects.h"

@@ -51,4 +51,9 @@ class Random {
   std::uint64_t m_state;
 };
 
+/// \brief A standard normal number from the bits of a hash, by table lookup. Its error is below
+/// 0.01 within 3.5 standard deviations; it never lies beyond them. Intended for noise that is
+/// summed over many terms.
+double normalFromHash(std::uint64_t bits);
+
 }  // namespace polemcl::sim

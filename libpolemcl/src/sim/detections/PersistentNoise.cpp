@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/common/NormalDistribution.h"
 #include "sim/common/Random.h"
 
 namespace polemcl::sim {

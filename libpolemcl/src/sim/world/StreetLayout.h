@@ -39,7 +39,7 @@ class StreetLayout {
 
  private:
   enum class Ground { lot, pavement, road };
-  // Buildings and gardens: StreetLayoutLots.cpp
+  // Buildings and gardens: StreetLayoutPermanent.cpp
   void lots(int side);
   double lot(int side, double s, Random& random);
   void house(int side, double s, double length, double setBack, Random& random);
@@ -47,18 +47,18 @@ class StreetLayout {
   /// \brief Paved ground in front of a house, where vehicles may park.
   void yard(int side, double s, double length, Random& random);
   void park(int side, double s, double length, Random& random);
-  // Along the kerb: StreetLayoutKerb.cpp
+  // Along the kerb: StreetLayoutPermanent.cpp
   void crossingFurniture();
   void lamps(int side);
   void avenue(int side);
   void signs(int side);
   void smallThings(int side);
-  // Objects of one day: StreetLayoutDay.cpp
+  // Objects of one day: StreetLayoutChanges.cpp
   void addedPoles(std::size_t permanentPoles);
   void parkedVehicles(int side);
   void vehiclesInYards();
   void people(int side);
-  // Changes of the year: StreetLayoutYear.cpp
+  // Changes of the year: StreetLayoutChanges.cpp
   struct Planned {
     std::uint32_t id;
     Kind kind;

@@ -5,8 +5,8 @@
 #include <polemcl/core/extraction/ExtractionReport.h>
 #include <polemcl/core/sensor/SensorOptions.h>
 #include "core/extraction/range_image/CircleFit.h"
-#include "core/extraction/range_image/PoleCandidates.h"
 #include "core/extraction/range_image/RangeImage.h"
+#include "core/extraction/range_image/Segmentation.h"
 #include "core/sensor/SensorModel.h"
 
 namespace polemcl {

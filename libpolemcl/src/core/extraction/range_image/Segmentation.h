@@ -1,11 +1,14 @@
 #pragma once
 /// \file Segmentation.h
-/// \brief Step B1 of the paper: neighbouring pixels of like range -> segments (Algorithm 1), in
-/// linear time.
+/// \brief Algorithm 1 of the paper: step B1, neighbouring pixels of like range -> segments, in
+/// linear time; step B2, tests of their shape, foreground and height.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include <polemcl/core/extraction/ExtractionOptions.h>
+#include <polemcl/core/extraction/ExtractionReport.h>
 #include "core/extraction/range_image/RangeImage.h"
 
 namespace polemcl {
@@ -43,5 +46,21 @@ class Segmentation {
   std::vector<std::int32_t>
       m_unwrapped;  ///< column of each reached pixel, counted on across the seam
 };
+
+/// \brief Extent of a segment in height, m, in the frame the options' heights are meant in.
+struct HeightRange {
+  double low = 0, high = 0;
+};
+
+/// \brief Tests a segment in the order of Algorithm 1.
+/// \param heightOffset Added to z of the points before heights are compared: height of the sensor
+///        where heights are above ground, else 0.
+/// \param[out] heights Filled once the shape tests have passed.
+/// \return The first reason to refuse it, if any.
+std::optional<RejectionReason> testCandidate(const RangeImage& image,
+                                             const Segmentation& segmentation, std::int32_t label,
+                                             const PointsView& points,
+                                             const RangeImageOptions& options, double heightOffset,
+                                             HeightRange& heights);
 
 }  // namespace polemcl

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/extraction/scan_line/ScanKernels.h"
 #include "core/extraction/scan_line/ScanLineSegmenter.h"
-#include "core/extraction/scan_line/TipBlocks.h"
 
 namespace polemcl {
 

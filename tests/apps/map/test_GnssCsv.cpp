@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include "io/data/GnssCsv.h"
+#include "map/DriveFixFiles.h"
 #include "support/IoFiles.h"
 #include "support/Refusal.h"
 
-namespace polemcl::io::test_gnss_csv {
+namespace polemcl::apps::test_gnss_csv {
 
-class GnssCsv : public test::FolderTest {};
+class GnssCsv : public io::test::FolderTest {};
 
 TEST_F(GnssCsv, ReadsFixes) {
   const auto file = write("a.csv",
@@ -38,4 +38,4 @@ TEST_F(GnssCsv, RefusesWhatIsNoFix) {
   EXPECT_REFUSED(readGnssCsv(write("d.csv", "time,latitude,longitude\n1,2,3\n")), "d.csv", "sigma");
 }
 
-}  // namespace polemcl::io::test_gnss_csv
+}  // namespace polemcl::apps::test_gnss_csv

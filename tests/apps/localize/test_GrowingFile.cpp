@@ -1,10 +1,10 @@
-#include "io/file/GrowingFile.h"
+#include "localize/RunFiles.h"
 #include "support/IoFiles.h"
 
 namespace polemcl::test_growing_file {
 
 using namespace polemcl::io::test;
-using polemcl::io::GrowingFile;
+using polemcl::apps::GrowingFile;
 
 using GrowingFileTest = FolderTest;
 

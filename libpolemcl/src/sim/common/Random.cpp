@@ -1,4 +1,4 @@
-#include "sim/common/NormalDistribution.h"
+#include "sim/common/Random.h"
 
 #include <algorithm>
 #include <array>
