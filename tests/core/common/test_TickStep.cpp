@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <polemcl/core/common/Types.h>
 #include "core/common/TickStep.h"
 
 namespace polemcl::test_tick_step {
