@@ -28,7 +28,7 @@ void print(std::ostream& out, const LidarCounts& lidar) {
 
 }  // namespace
 
-std::vector<std::string> rawDoubts(const SequenceCounts& counts) {
+std::vector<std::string> turnDoubts(const SequenceCounts& counts, const ScanTiming& timing) {
   std::vector<std::string> doubts;
   for (const auto& [label, turn] : counts.untoldTurns)
     doubts.push_back("scans of " + (label.empty() ? "the LiDAR" : label) +
@@ -37,6 +37,13 @@ std::vector<std::string> rawDoubts(const SequenceCounts& counts) {
                      " deg apart; set [sensor] turn = " + name(turn.turn) +
                      ", moving_cut = true to correct them for the motion during a turn, or turn = "
                      "compensated if they are corrected");
+  const bool isSet = timing.turn != Turn::automatic && counts.lidars.empty();
+  if (isSet && counts.storedScans > 0 && counts.poles > 0 && timing.known() != counts.storedTurn)
+    doubts.push_back(
+        std::string("its poles were extracted ") +
+        (counts.storedTurn ? "with a turn of the LiDAR" : "without a turn of the LiDAR") +
+        ", so [sensor] turn = " + name(timing.turn) +
+        " does nothing here: extract them from the scans again");
   return doubts;
 }
 

@@ -11,8 +11,9 @@
 
 namespace polemcl::apps {
 
-/// \brief A sentence for each LiDAR whose scans look raw though nothing says so: a warning.
-std::vector<std::string> rawDoubts(const SequenceCounts& counts);
+/// \brief Warnings: a sentence for each LiDAR whose scans look raw though nothing says so, and one
+/// if `[sensor] turn` is set, but stored poles were extracted with another.
+std::vector<std::string> turnDoubts(const SequenceCounts& counts, const ScanTiming& timing);
 
 /// \brief A line for each LiDAR that was fused, with how well it agrees with the others; a line for
 /// scans that were not used, with their sensors and what to write in order to use them.

@@ -189,7 +189,7 @@ namespace {
 void runExtraction(const ExtractOptions& options, const AllSettings& settings, bool quiet) {
   const auto summary = extractPoles(options, settings, Progress("extract", 0, quiet).updates());
   if (!quiet) print(summary, options);
-  for (const std::string& doubt : rawDoubts(summary.counts))
+  for (const std::string& doubt : turnDoubts(summary.counts, settings.sensor.timing))
     std::cerr << warningLine("pole-extract", options.input.string() + ": " + doubt) << '\n';
   if (summary.counts.poles == 0)
     std::cerr << warningLine("pole-extract", options.input.string() + ": no pole in any of " +

@@ -15,6 +15,7 @@
 #include "core/common/Binder.h"
 #include "io/data/Trajectory.h"
 #include "io/file/ErrorPlace.h"
+#include "io/map/PoleMapFile.h"
 #include "localize/LiveDrive.h"
 #include "localize/LocalizePlayer.h"
 #include "localize/LocalizeReport.h"
@@ -209,6 +210,13 @@ void warnOfErrors(const SpreadCheck& check, const std::filesystem::path& truth) 
             << '\n';
 }
 
+/// What pole-map kept in a map that it doubted; empty for others.
+std::string warningsOfMap(const std::filesystem::path& file) {
+  const auto info = io::readPoleMap(file).info;
+  const auto found = info.find("warnings");
+  return found == info.end() ? "" : " The map was made with warnings: " + found->second;
+}
+
 /// A short drive may end before its pose is confirmed; it is not lost.
 void warnIfLost(const LocalizeResult& result, const LocalizeJob& job) {
   std::size_t scans = 0, ok = 0, lost = 0;
@@ -221,7 +229,8 @@ void warnIfLost(const LocalizeResult& result, const LocalizeJob& job) {
   std::cerr << warningLine("pole-localize", "no pose was ok, most were lost: is " +
                                                 job.map.string() +
                                                 " a map of another place, the start wrong, or the "
-                                                "configuration that of another LiDAR?")
+                                                "configuration that of another LiDAR?" +
+                                                warningsOfMap(job.map))
             << '\n';
 }
 
@@ -285,7 +294,7 @@ LocalizeResult localize(const LocalizeJob& job) {
     printTable(out, facts, result);
     out << timingsLine(result.timings) << "\nresults in " << job.output.string() << std::endl;
   }
-  for (const std::string& doubt : rawDoubts(drive.counts))
+  for (const std::string& doubt : turnDoubts(drive.counts, settings.sensor.timing))
     std::cerr << warningLine("pole-localize", job.source().string() + ": " + doubt) << '\n';
   if (job.truth) warnOfErrors(result.spreadCheck, *job.truth);
   warnIfLost(result, job);

@@ -83,7 +83,8 @@ void LocalizePlayer::take(const ReadScan& scan) {
         source + ": no odometry for scan " + std::to_string(scan.index) + ", at " +
         io::fixed(scan.time, 3) + " s: the filter needs it; " +
         (scan.index > 1 ? "leave out what comes before it begins or after it ends, or " : "") +
-        "import with an odometry file or with --odometry-noise");
+        "import with --odometry FILE, or from true poses with --odometry-noise; without either, "
+        "pole-map build --trajectory FILE makes one of the poles");
   const PoleScan frame = frameOf(scan);
   if (!m_runs) begin(frame);
   const std::vector<FilterStep>& steps = *io::located(

@@ -217,7 +217,7 @@ void mapDrivesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
   for (std::size_t i = 0; i < drives.size(); ++i)
     doubt(summary, job, i,
           timingDoubt(dead[i], remainingTiming(drives[i], timing.seconds), timing,
-                      !drives[i].rawDoubts.empty()));
+                      drives[i].looksRaw));
 }
 
 /// Whether the poles contradict the true poses, the timing of the scans or the mounting.
@@ -245,7 +245,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
   for (std::size_t i = 0; i < job.inputs.size(); ++i)
     drives.push_back(loadMappingSession(job.session(i), settings, job.allowTruncated, progress));
   for (std::size_t i = 0; i < drives.size(); ++i)
-    for (const std::string& text : drives[i].rawDoubts) doubt(summary, job, i, text);
+    for (const std::string& text : drives[i].turnDoubts) doubt(summary, job, i, text);
   if (job.kind == PoseKind::truth) checkTruth(drives, job, settings.sensor.timing, summary);
   LandmarkMap inventory;
   if (job.inventory) {

@@ -168,11 +168,14 @@ void tellPoses(std::ostream& out, const MapBuildSummary& summary, const MapBuild
   const FixFit fixes = allFixes(mapped);
   const bool alone = std::all_of(summary.filled.begin(), summary.filled.end(),
                                  [](const FilledMotions& filled) { return filled.all; });
+  std::size_t guesses = 0;
+  for (const FilledMotions& filled : summary.filled) guesses += filled.coasted;
   out << (alone ? "poses by " : "poses by odometry and ") << mapped.tracks
       << " poles followed over " << io::fixed(mapped.driven, 1) << " m; " << mapped.newLoops()
       << " places passed again; the last pose is certain to "
       << io::fixed(sigmaOf(mapped.poses.back()), 2)
-      << (fixes.given + mapped.known > 0 ? " m\n" : " m against the first\n");
+      << (fixes.given + mapped.known > 0 ? " m" : " m against the first")
+      << (guesses > 0 ? ", if " + std::to_string(guesses) + " guessed motions are right\n" : "\n");
   if (fixes.given > 0)
     out << "placed by " << fixes.fitting
         << " positions from satellites; the first pose is certain to "
@@ -196,8 +199,11 @@ std::string noPolesText(const MapBuildSummary& summary) {
          (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]") +
          // Poles that are found again and again fall into few places.
          (map.detections > 0 && 2 * map.clusters > map.detections
-              ? "; most places hold one detection: check that the true poses fit the scans (frame, "
-                "z up, times)"
+              ? std::string("; most places hold one detection: ") +
+                    (summary.mapped
+                         ? "the motions are wrong; write odometry to the rawlog "
+                           "(pole-import --odometry), or take scans closer together"
+                         : "check that the true poses fit the scans (frame, z up, times)")
               : "");
 }
 
@@ -229,7 +235,7 @@ std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBui
   for (std::size_t i = 0; i < summary.motions.size(); ++i)
     if (summary.motions[i].contradicts())
       doubt(i, summary.motions[i].verdict() + "; check " + job.poses[i].filename().string() +
-                   ", or build without --truth");
+                   ", and [sensor] turn by pole-extract --inspect; else build without --truth");
   const std::size_t poles = summary.map.poles.size();
   if (static_cast<double>(summary.twins) > kManyTwins * static_cast<double>(poles))
     warnings.push_back(
@@ -238,7 +244,8 @@ std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBui
         " m apart); mostly the poses of some scans are wrong" +
         (job.kind == PoseKind::truth
              ? ", check them with pole-eval motion"
-             : ", or that of the LiDAR on the vehicle (--sensor-pose of pole-import)"));
+             : ", that of the LiDAR on the vehicle (--sensor-pose of pole-import), or the timing "
+               "of the scans ([sensor] turn)"));
   return warnings;
 }
 

@@ -156,7 +156,7 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& setti
     requireSamePlace(counts, job.inputs[i], job.map);
     summary.sessions.push_back(counts);
     summary.skipped += session.skipped;
-    for (const std::string& doubt : session.rawDoubts)
+    for (const std::string& doubt : session.turnDoubts)
       summary.doubts.push_back(job.inputs[i].string() + ": " + doubt);
     path.insert(path.end(), session.path.begin(), session.path.end());
   }

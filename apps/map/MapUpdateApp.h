@@ -21,7 +21,7 @@ struct MapUpdateSummary {
   std::size_t before = 0;                 ///< poles on the map to begin with
   std::size_t poles = 0;                  ///< now
   SkippedScans skipped;
-  std::vector<std::string> doubts;  ///< of sessions whose scans look raw
+  std::vector<std::string> doubts;  ///< turnDoubts() of the sessions
 };
 
 /// \brief Updates the map by one session after the other, in the order given, and writes what was
@@ -38,8 +38,8 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& setti
 /// \brief What the program prints.
 std::string summaryText(const MapUpdateSummary& summary, const MapUpdateJob& job);
 
-/// \brief A line for each LiDAR whose scans look raw, and for each session of which more than 5 %
-/// of the poles in view "moved". Poles seldom do: rather the poses are wrong.
+/// \brief turnDoubts(), and a line for each session of which more than 5 % of the poles in view
+/// "moved". Poles seldom do: rather the poses are wrong.
 std::vector<std::string> warningsOf(const MapUpdateSummary& summary, const MapUpdateJob& job);
 
 }  // namespace polemcl::apps

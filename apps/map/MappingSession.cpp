@@ -161,7 +161,8 @@ MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& 
   printSensors(sensors, counts);
   session.skipped = {counts.emptyScans, 0, 0, counts.invalidPoints, counts.truncated,
                      sensors.str()};
-  session.rawDoubts = rawDoubts(counts);
+  session.turnDoubts = turnDoubts(counts, settings.sensor.timing);
+  session.looksRaw = !counts.untoldTurns.empty();
   std::optional<PoseWithCovariance> way;
   for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
     const PoleScan& frame = sequence.frames[i];

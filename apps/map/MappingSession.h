@@ -118,7 +118,8 @@ struct MappingSession {
   std::vector<std::optional<PoseWithCovariance>> motions;
   FilledMotions filled;  ///< motions that the odometry did not tell
   SkippedScans skipped;
-  std::vector<std::string> rawDoubts;  ///< rawDoubts() of its LiDARs
+  std::vector<std::string> turnDoubts;  ///< turnDoubts() of its LiDARs
+  bool looksRaw = false;                ///< its scans, though nothing says so
 };
 
 /// \brief Reads a rawlog of scans or poles; doubtful detections down to `[map] min_confidence`.

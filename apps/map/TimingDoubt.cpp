@@ -54,17 +54,19 @@ std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped
                             errors(found.turnSignificance) + ": ";
   const std::string corrected = "check turn, cut_deg, turn_s and the times of the scans";
   if (timing.known()) return doubt + corrected;
-  return doubt + "if nothing corrected them, of an upright LiDAR [sensor] turn = " +
+  return doubt +
+         "if nothing corrected them, set [sensor] turn, and cut_deg or moving_cut, as pole-extract "
+         "--inspect finds them in the scans, and extract the poles again (by the poles alone, of "
+         "an "
+         "upright LiDAR with a fixed cut, turn = " +
          name(found.timing.turn) + " and cut_deg = " + io::fixed(found.timing.cut / degree, 0) +
-         " fit best, or moving_cut = true where each scan begins elsewhere (pole-extract --inspect "
-         "tells them, unless it finds no beams); if the rawlog states a turn, " +
-         corrected;
+         " fit best); if the rawlog states a turn, " + corrected;
 }
 
 /// Clocks are searched only on a suspicion: it takes much longer.
 std::string timingDoubtOfTruth(const MappingSession& drive, const ScanTiming& timing) {
   if (!searchTiming(timedScans(drive), timing.seconds, {}, false).timing.known()) return {};
-  return timingDoubt(remainingTiming(drive, timing.seconds), {}, timing, !drive.rawDoubts.empty());
+  return timingDoubt(remainingTiming(drive, timing.seconds), {}, timing, drive.looksRaw);
 }
 
 }  // namespace polemcl::apps

@@ -262,6 +262,30 @@ TEST_F(InspectApp, RawScansAreToldByMapsAndPosesToo) {
   EXPECT_HAS(localized.err, told);
 }
 
+TEST_F(InspectApp, PolesOfAnotherTurnAreTold) {
+  importCutAnew("40");
+  const auto told = [&](const std::vector<std::string>& extracted, const std::string& turn) {
+    succeeded(runProgram(extractMain,
+                         {"--quiet", "--config", "vlp16.ini", "--input", at("in.rawlog"),
+                          "--output", at("poles.rawlog")},
+                         extracted));
+    return runProgram(mapMain, {"build", "--quiet", "--config", "vlp16.ini", "--input",
+                                at("poles.rawlog"), "--truth", at("sim.tum"), "--set",
+                                "sensor.turn=" + turn, "--output", at("street.polemap")})
+        .err;
+  };
+  const std::vector<std::string> plain{"--set", "sensor.turn=compensated"},
+      turned{"--set", "sensor.turn=clockwise", "--set", "sensor.moving_cut=true"};
+  EXPECT_HAS(
+      told(plain, "clockwise"),
+      "poles.rawlog: its poles were extracted without a turn of the LiDAR, so [sensor] turn = "
+      "clockwise does nothing here: extract them from the scans again");
+  EXPECT_HAS(told(turned, "compensated"), "extracted with a turn of the LiDAR, so");
+  EXPECT_EQ(told(plain, "compensated").find("extracted"), std::string::npos);
+  EXPECT_EQ(told(turned, "clockwise").find("extracted"), std::string::npos);
+  EXPECT_EQ(told(turned, "auto").find("extracted"), std::string::npos);
+}
+
 // Also where nobody knows the motion, or where the poses were found from the same scans.
 TEST_F(InspectApp, TheOrderOfThePointsTellsRawScans) {
   const std::string advice = "set turn = clockwise, moving_cut = true";

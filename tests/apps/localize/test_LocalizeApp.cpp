@@ -4,6 +4,7 @@
 
 #include "cli/Projections.h"
 #include "io/map/Datum.h"
+#include "io/map/PoleMapFile.h"
 #include "mrpt/rawlog/GnssFixes.h"
 #include "support/CityFiles.h"
 #include "support/LocalizeTest.h"
@@ -344,12 +345,16 @@ TEST(LocalizeAppAnywhere, ThePositionFromSatellitesSaysWhereToSearch) {
 TEST(LocalizeAppAnywhere, ARunThatFindsNothingIsNoErrorButSaysSo) {
   registerClasses();
   const CityFiles city(40), other(5, 99);
+  io::PoleMapData map = io::readPoleMap(other.at("city.polemap"));
+  map.info["warnings"] = "drive.rawlog: its scans doubt it";
+  io::writePoleMap(other.at("city.polemap"), map);
   const Outcome outcome = succeeded(
       runProgram(localizeMain, {"--config", city.at("city.ini"), "--input", city.at("drive.rawlog"),
                                 "--map", other.at("city.polemap"), "--truth", city.at("drive.tum"),
                                 "--output", city.at("out"), "--global"}));
   EXPECT_NE(outcome.out.find("1 of 1 runs never found a pose"), std::string::npos);
   EXPECT_HAS(outcome.err, "warning: no pose was ok, most were lost: is ");
+  EXPECT_HAS(outcome.err, "The map was made with warnings: drive.rawlog: its scans doubt it");
   const auto json = nlohmann::json::parse(readText(city.folder / "out/summary.json"));
   EXPECT_EQ(json["runs_without_pose"], 1);
   EXPECT_TRUE(json["runs"][0]["health"]["first_pose_scan"].is_null());

@@ -70,7 +70,7 @@ TEST(SensorCounts, SayThatLidarsDisagree) {
 TEST(SensorCounts, SayThatScansLookRaw) {
   SequenceCounts counts;
   counts.untoldTurns["roof"] = {Turn::clockwise, M_PI / 2};
-  const std::vector<std::string> doubts = rawDoubts(counts);
+  const std::vector<std::string> doubts = turnDoubts(counts, {});
   ASSERT_EQ(doubts.size(), 1u);
   EXPECT_HAS(doubts[0], "scans of roof look raw");
   EXPECT_HAS(doubts[0],

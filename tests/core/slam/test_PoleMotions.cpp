@@ -104,6 +104,13 @@ TEST_F(PoleMotionsTest, CoastsOverSeveralGapsOfTheOdometry) {
   EXPECT_EQ(fillMotions(scans).coasted, 30u);
 }
 
+TEST_F(PoleMotionsTest, GuessesNoPathWithoutOdometry) {
+  forgetMotions(1, scans.size());
+  for (const std::size_t begin : {20, 40, 60}) blind(begin, begin + 15);
+  EXPECT_REFUSED(fillMotions(scans), "without odometry, the poles do not tell ",
+                 " motions, the first before ", "its path would be a guess");
+}
+
 /// A wheel slips, an encoder starts anew, a turn is told twice: the poles tell the way there.
 TEST_F(PoleMotionsTest, TheyTellWhereTheOdometryIsWrong) {
   scans.erase(scans.begin(), scans.begin() + 20);  // few poles stand there

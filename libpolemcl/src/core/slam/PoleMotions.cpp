@@ -33,6 +33,9 @@ constexpr double kDoubted = 1.0 / 3;
 /// another vehicle, in another frame or in other units.
 constexpr double kMostRefuted = 0.3;
 constexpr int kFewMotions = 10;
+/// Greatest share of motions that the poles of a drive without odometry do not tell. Beyond, its
+/// path is a guess.
+constexpr double kMostUntold = 0.25;
 
 /// Poles as seen at the time of their scan.
 std::vector<PoleDetection> stillPoles(const PoleScan& scan, const Velocity& velocity) {
@@ -56,6 +59,8 @@ class MotionFiller {
     }
     m_filled.motions = m_scans.empty() ? 0 : m_scans.size() - 1;
     m_filled.all = m_filled.byPoles + m_filled.coasted + m_filled.contradicted >= m_filled.motions;
+    const auto most = kMostUntold * static_cast<double>(m_filled.motions);
+    if (m_filled.all && static_cast<double>(m_filled.coasted) > most) refuseGuesses();
     return m_filled;
   }
 
@@ -274,6 +279,14 @@ class MotionFiller {
                 " s, and the poles did not tell the motion for 2 s: three at least must be seen in "
                 "two scans; write "
                 "odometry to the rawlog, or cut the drive there");
+  }
+
+  [[noreturn]] void refuseGuesses() const {
+    throw Error("without odometry, the poles do not tell " + std::to_string(m_filled.coasted) +
+                " of its " + std::to_string(m_filled.motions) + " motions, the first before " +
+                std::to_string(m_filled.firstCoasted) +
+                " s: its path would be a guess; write odometry to the rawlog (pole-import "
+                "--odometry), take scans closer together, or mend their order and times");
   }
 
   std::vector<PoleScan>& m_scans;

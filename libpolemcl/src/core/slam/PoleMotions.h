@@ -36,7 +36,8 @@ struct FilledMotions {
 /// those of which the poles say nothing are told anew if they are not the motion before. Where more
 /// than 30 % of its motions are told anew, the odometry is not used at all, if the poles can tell
 /// the whole way.
-/// \throws Error naming the scan where too few poles told the motion over 2 s.
+/// \throws Error naming the scan where too few poles told the motion over 2 s, and if the poles of
+/// a drive without odometry do not tell a quarter of its motions.
 FilledMotions fillMotions(std::vector<PoleScan>& scans);
 
 }  // namespace polemcl

@@ -68,6 +68,9 @@ void checkCount(const fs::path& file, const std::string& what, std::size_t got,
 }
 
 void readTimes(const fs::path& file, const Scans& scans, ScanFolder& folder) {
+  if (!isThere(file))
+    throw Error(file.string() +
+                ": No such file or directory; it must give the time of each scan, s, one a line");
   const auto rows = readNumberRows(file, 1, "one time a line, s");
   checkCount(file, "times", rows.size(), scans.files.size(), scans, folder.notes);
   requireIncreasing(file, rows);

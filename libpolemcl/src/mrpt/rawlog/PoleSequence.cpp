@@ -189,10 +189,14 @@ void Stream::collect(Task& task, const std::function<void(const ReadScan&)>& con
 void Stream::count(const ReadScan& scan) {
   ++m_counts.scans;
   m_counts.storedScans += scan.stored ? 1 : 0;
+  const std::vector<PoleDetection>& poles = scan.observation->poles;
+  m_counts.storedTurn |= scan.stored && std::any_of(poles.begin(), poles.end(), [&](const auto& p) {
+                           return p.timeOffset != poles.front().timeOffset;
+                         });
   m_counts.emptyScans += scan.points == 0 && scan.observation->poles.empty() ? 1 : 0;
   m_counts.points += scan.points;
   m_counts.invalidPoints += scan.invalid;
-  m_counts.poles += scan.observation->poles.size();
+  m_counts.poles += poles.size();
 }
 
 void Stream::countLidars(const Task& task) {

@@ -61,6 +61,7 @@ struct LidarCounts {
 struct SequenceCounts {
   std::size_t scans = 0;          ///< scans returned, including empty ones
   std::size_t storedScans = 0;    ///< scans that were stored as poles in the rawlog
+  bool storedTurn = false;        ///< their poles say when in a turn they were measured
   std::size_t emptyScans = 0;     ///< scans without valid points and poles
   std::size_t points = 0;         ///< valid points of all scans
   std::size_t invalidPoints = 0;  ///< points dropped: NaN, infinite or at the origin
