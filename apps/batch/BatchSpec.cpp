@@ -16,7 +16,6 @@
 #include "report/batch/PublishedResults.h"
 
 namespace polemcl::apps {
-
 namespace fs = std::filesystem;
 namespace {
 

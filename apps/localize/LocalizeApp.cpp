@@ -218,7 +218,8 @@ std::string warningsOfMap(const std::filesystem::path& file) {
 }
 
 /// A short drive may end before its pose is confirmed; it is not lost.
-void warnIfLost(const LocalizeResult& result, const LocalizeJob& job) {
+/// \param doubts warningsOfMap()
+void warnIfLost(const LocalizeResult& result, const LocalizeJob& job, const std::string& doubts) {
   std::size_t scans = 0, ok = 0, lost = 0;
   for (const auto& run : result.runs) {
     scans += run.scans;
@@ -230,7 +231,7 @@ void warnIfLost(const LocalizeResult& result, const LocalizeJob& job) {
                                                 job.map.string() +
                                                 " a map of another place, the start wrong, or the "
                                                 "configuration that of another LiDAR?" +
-                                                warningsOfMap(job.map))
+                                                doubts)
             << '\n';
 }
 
@@ -249,6 +250,7 @@ std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
 LocalizeResult localize(const LocalizeJob& job) {
   const AllSettings settings = effectiveSettings(job);
   const auto map = loadPoleMap(job.map, settings.likelihood);
+  const std::string doubts = warningsOfMap(job.map);  // the file may be replaced during the drive
   std::vector<StampedPose2D> truth;
   if (job.truth) truth = io::readPlanarTum(*job.truth);
   LocalizeFacts facts = factsOf(job, settings, *map);
@@ -297,7 +299,7 @@ LocalizeResult localize(const LocalizeJob& job) {
   for (const std::string& doubt : turnDoubts(drive.counts, settings.sensor.timing))
     std::cerr << warningLine("pole-localize", job.source().string() + ": " + doubt) << '\n';
   if (job.truth) warnOfErrors(result.spreadCheck, *job.truth);
-  warnIfLost(result, job);
+  warnIfLost(result, job, doubts);
   view.waitForWindow();
   if (!failure.empty())
     throw Error(failure +
