@@ -51,6 +51,19 @@ void printBeams(std::ostream& out, const SensorIdentification& sensor) {
         << io::fixed(std::abs(beams.origin.slide), 2) << " m a turn\n";
 }
 
+/// What to do where scans are longer than a turn, as by the one in the middle.
+void printSweep(std::ostream& out, std::vector<PointOrder> orders) {
+  if (orders.empty()) return;
+  const auto middle = orders.begin() + static_cast<std::ptrdiff_t>(orders.size() / 2);
+  std::nth_element(orders.begin(), middle, orders.end(),
+                   [](const PointOrder& a, const PointOrder& b) { return a.sweep < b.sweep; });
+  if (middle->sweep <= kMoreThanATurn) return;
+  out << "sweep             " << degrees(middle->sweep, 0)
+      << " deg a scan, of which moving_cut = true uses 360. A turn takes "
+      << io::fixed(2 * M_PI / middle->sweep, 3)
+      << "\n                  of the time between scans; state it with --turn-s\n";
+}
+
 void printMounting(std::ostream& out, const RawlogInspection& inspection) {
   const SensorIdentification& sensor = inspection.sensor;
   const SensorOptions& options = inspection.options;
@@ -59,6 +72,7 @@ void printMounting(std::ostream& out, const RawlogInspection& inspection) {
     out << sensor.columns << " a turn\n";
   else
     out << "unknown: neighbours on a beam have no common step\n";
+  printSweep(out, inspection.orders);
   out << "ranges            " << io::fixed(sensor.nearest, 1) << " to "
       << io::fixed(sensor.farthest, 1) << " m (1 % to 99 % of the returns)\n"
       << "optical centre    " << io::fixed(options.originX, 3) << ' '
@@ -245,9 +259,9 @@ void printRanges(std::ostream& out, const Inspection& inspection) {
 }
 
 /// A turn of one second from azimuth 0, or from the first point: the time offset of a detection
-/// tells its azimuth.
+/// tells its azimuth. Of scans of more than a turn, the one in the middle is used.
 ScanTiming azimuthAsTime(bool movingCut) {
-  return {Turn::counterclockwise, 1, 0, 0, 0, movingCut};
+  return {Turn::counterclockwise, 1, 0, movingCut ? 0.5 : 0, 0, movingCut};
 }
 
 /// The places of the poles of a drive, with azimuths in the place of time offsets. None if a scan
@@ -269,7 +283,8 @@ std::optional<std::vector<TimedScan>> readDrive(const InspectOptions& options, A
     if (!pose) continue;
     TimedScan scan{frame.time, *pose, {}};
     for (const PoleDetection& pole : frame.poles_robot)
-      scan.poles_robot.push_back({pole.x, pole.y, 2 * M_PI * pole.timeOffset});
+      scan.poles_robot.push_back(
+          {pole.x, pole.y, 2 * M_PI * (pole.timeOffset + settings.sensor.timing.stamp)});
     scans.push_back(std::move(scan));
   }
   return scans;

@@ -49,9 +49,9 @@ void writeSimulated(const fs::path& folder, const std::string& lidar, double hei
   writeText(folder / "poses.txt", poses);
 }
 
-/// The turns of a simulated VLP-16 in `folder/sim`, 8 m/s, clockwise, cut anew after each 1.03
-/// turns: `folder/in`, with its points in the order of measuring.
-void cutAnew(const fs::path& folder, std::size_t turns) {
+/// The turns of a simulated VLP-16 in `folder/sim`, 8 m/s, clockwise, cut anew every `span` s,
+/// which is more than one: `folder/in`, with its points in the order of measuring.
+void cutAnew(const fs::path& folder, std::size_t turns, double span) {
   struct Measured {
     double time;
     std::array<float, 4> point;
@@ -68,7 +68,6 @@ void cutAnew(const fs::path& folder, std::size_t turns) {
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const Measured& a, const Measured& b) { return a.time < b.time; });
-  constexpr double span = 0.103;
   std::string stamps;
   std::size_t at = 0, number = 0;
   for (double begin = all.front().time; begin + span < all.back().time; begin += span) {
@@ -92,7 +91,7 @@ class InspectApp : public StreetTest {
   }
   /// Raw scans of a street of this length, m, as cutAnew() makes them, without odometry:
   /// `in.rawlog`, with their motion in `sim.tum`.
-  void importCutAnew(const std::string& length) {
+  void importCutAnew(const std::string& length, double span = 0.103) {
     const Outcome simulated = succeeded(runProgram(
         simulateMain,
         {"--quiet", "--config", "vlp16.ini", "--length", length, "--output", at("sim"), "--set",
@@ -100,7 +99,7 @@ class InspectApp : public StreetTest {
          "simulation.speed_m_s=8", "--set", "sensor.turn=clockwise", "--set",
          "sensor.range_offset_m=0.1", "--set", "sensor.range_scale=0.995"}));
     import("sim", false);  // for its true poses
-    cutAnew(folder.path(), io::readTum(folder / "sim.tum").size());
+    cutAnew(folder.path(), io::readTum(folder / "sim.tum").size(), span);
     import("in", false);
   }
 };
@@ -284,6 +283,26 @@ TEST_F(InspectApp, PolesOfAnotherTurnAreTold) {
   EXPECT_EQ(told(plain, "compensated").find("extracted"), std::string::npos);
   EXPECT_EQ(told(turned, "clockwise").find("extracted"), std::string::npos);
   EXPECT_EQ(told(turned, "auto").find("extracted"), std::string::npos);
+}
+
+TEST_F(InspectApp, ScansOfMoreThanATurnAreTold) {
+  importCutAnew("30", 0.112);
+  InspectOptions files;
+  files.input = folder / "in.rawlog";
+  const Inspection found = inspect(files);
+  const std::string text = printed(found);
+  const auto number = [&](const std::string& word) {
+    const std::size_t at = text.find(word);
+    return at == std::string::npos ? 0 : std::stod(text.substr(at + word.size()));
+  };
+  EXPECT_NEAR(number("sweep"), 360 * 1.12, 2);
+  EXPECT_NEAR(number("A turn takes"), 1 / 1.12, 0.005);
+  double measured = 0;  // points
+  for (const std::size_t scan : found.sensor.used)
+    measured += static_cast<double>(readText(folder / "in" / "velodyne" / scanName(scan)).size()) /
+                sizeof(std::array<float, 4>);
+  EXPECT_NEAR(measured / static_cast<double>(found.sensor.sensor.points), 1.12, 0.02)
+      << "columns and beams are those of one turn";
 }
 
 // Also where nobody knows the motion, or where the poses were found from the same scans.

@@ -79,10 +79,38 @@ TEST(PointOrder, AWholeTurnLacksLessThanASixth) {
   EXPECT_FALSE(tells(295));
 }
 
+/// First index and number of points of a turn of a scan that sweeps 399 deg and lacks 29 of them.
+std::pair<std::size_t, std::size_t> turnOf(double step, double stamp) {
+  std::vector<float> x, y, z;
+  for (const double azimuth : turn(100, step, 400)) {
+    if (std::abs(azimuth - 100) > 200 && std::abs(azimuth - 100) < 230) continue;
+    x.push_back(static_cast<float>(10 * std::cos(azimuth * M_PI / 180)));
+    y.push_back(static_cast<float>(10 * std::sin(azimuth * M_PI / 180)));
+    z.push_back(0);
+  }
+  const PointsView points{x.data(), y.data(), z.data(), x.size()};
+  const PointOrder order = pointOrder(points).value();
+  EXPECT_NEAR(order.sweep, 399 * M_PI / 180, 1e-3);
+  const PointsView one = oneTurn(points, order, stamp);
+  return {static_cast<std::size_t>(one.x - points.x), one.size};
+}
+
+TEST(PointOrder, OfMoreThanATurnOneIsTaken) {
+  for (const double step : {-1.0, 1.0}) {
+    const auto first = turnOf(step, 0), middle = turnOf(step, 0.5), last = turnOf(step, 1);
+    EXPECT_EQ(first.first, 0u);
+    EXPECT_NEAR(static_cast<double>(first.second), 331, 1) << "azimuths 0 to 200, 230 to 360";
+    EXPECT_NEAR(static_cast<double>(middle.first), 20, 1);
+    EXPECT_NEAR(static_cast<double>(middle.second), 331, 1);
+    EXPECT_NEAR(static_cast<double>(last.first), 39, 1);
+    EXPECT_EQ(last.first + last.second, 371u) << "to the end";
+  }
+}
+
 TEST(PointOrder, TurnsBeginWithinAnArcUnlessTheyTurnDifferentWays) {
   EXPECT_EQ(beginArc({}), 0);
-  const PointOrder left{Turn::counterclockwise, 3.0, 6}, beyond{Turn::counterclockwise, -3.0, 6},
-      right{Turn::clockwise, 1, 6};
+  const PointOrder left{Turn::counterclockwise, 3.0, 6, 6},
+      beyond{Turn::counterclockwise, -3.0, 6, 6}, right{Turn::clockwise, 1, 6, 6};
   EXPECT_NEAR(beginArc({left, beyond}), 2 * M_PI - 6, 1e-12) << "across the back";
   EXPECT_EQ(beginArc({left, right}), 0);
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/common/Angles.h"
 #include "support/ExpectHas.h"
 #include "support/ExtractionSamples.h"
 
@@ -31,36 +32,74 @@ TEST(ObservationPoleExtractor, LevelCloudsGoThroughUntouched) {
   EXPECT_GE(found(*scan, 0.05), 6);
 }
 
+/// The share of a turn clockwise from `begin` to a place.
+double turnedTo(double begin, double x, double y) {
+  const double share = (begin - std::atan2(y, x)) / (2 * M_PI);
+  return share - std::floor(share);
+}
+
+/// The same points in another order: smallest value first.
+TestCloud sorted(const TestCloud& cloud,
+                 const std::function<double(float x, float y, float z)>& value) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < cloud.x.size(); ++i)
+    order.emplace_back(value(cloud.x[i], cloud.y[i], cloud.z[i]), i);
+  std::sort(order.begin(), order.end());
+  TestCloud result = cloud;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    result.x[i] = cloud.x[order[i].second];
+    result.y[i] = cloud.y[order[i].second];
+    result.z[i] = cloud.z[order[i].second];
+  }
+  return result;
+}
+
 TEST(ObservationPoleExtractor, AMovingCutIsAtTheFirstPoint) {
   auto options = hdl32(1.5);
   options.sensor.timing = {Turn::clockwise, 0.1, M_PI, 0, 0, true};
   const TestCloud cloud = plainCloud(options);
   ObservationPoleExtractor extraction(options);
-  /// The same points in another order: smallest value first.
   const auto process = [&](const std::function<double(float x, float y, float z)>& value) {
-    std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t i = 0; i < cloud.x.size(); ++i)
-      order.emplace_back(value(cloud.x[i], cloud.y[i], cloud.z[i]), i);
-    std::sort(order.begin(), order.end());
-    TestCloud sorted = cloud;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      sorted.x[i] = cloud.x[order[i].second];
-      sorted.y[i] = cloud.y[order[i].second];
-      sorted.z[i] = cloud.z[order[i].second];
-    }
-    return extraction.process(*observationOf(sorted, CPose3D()));
+    return extraction.process(*observationOf(sorted(cloud, value), CPose3D()));
   };
   for (const double begin : {0.3, -2.5}) {
-    const auto turned = [&](double x, double y) {
-      const double share = (begin - std::atan2(y, x)) / (2 * M_PI);
-      return share - std::floor(share);
-    };
-    const auto scan = process([&](float x, float y, float) { return turned(x, y); });
+    const auto scan = process([&](float x, float y, float) { return turnedTo(begin, x, y); });
     EXPECT_GE(scan->poles.size(), 6u);
     for (const PoleDetection& pole : scan->poles)
-      EXPECT_NEAR(std::remainder(pole.timeOffset - 0.1 * turned(pole.x, pole.y), 0.1), 0, 1e-3);
+      EXPECT_NEAR(std::remainder(pole.timeOffset - 0.1 * turnedTo(begin, pole.x, pole.y), 0.1), 0,
+                  1e-3);
   }
   EXPECT_THROW(process([](float, float, float z) { return z; }), Error);
+}
+
+// Its second sight of a pole has another time than its azimuth tells: the vehicle has moved on.
+TEST(ObservationPoleExtractor, AMovingCutOfMoreThanATurnUsesTheTurnOfTheStamp) {
+  auto options = hdl32(1.5);
+  const TestCloud cloud = plainCloud(options);
+  const auto once = ObservationPoleExtractor(options).process(*observationOf(cloud, CPose3D()));
+  const PoleDetection& pole = once->poles.front();
+  const double begin = std::atan2(pole.y, pole.x) + 20 * M_PI / 180;
+  const auto share = [&](float x, float y, float) { return turnedTo(begin, x, y); };
+  TestCloud both = sorted(cloud, share);
+  for (std::size_t i = 0; i < cloud.x.size() && share(both.x[i], both.y[i], 0) < 40. / 360; ++i) {
+    both.x.push_back(1.1f * both.x[i]);
+    both.y.push_back(1.1f * both.y[i]);
+    both.z.push_back(1.1f * both.z[i]);
+  }
+  const auto distances = [&](double stamp) {
+    options.sensor.timing = {Turn::clockwise, 0.1, M_PI, stamp, 0, true};
+    const auto scan = ObservationPoleExtractor(options).process(*observationOf(both, CPose3D()));
+    std::vector<double> found;
+    for (const PoleDetection& p : scan->poles)
+      if (std::abs(wrapAngle(std::atan2(p.y, p.x) - std::atan2(pole.y, pole.x))) < 0.01)
+        found.push_back(std::hypot(p.x, p.y) / std::hypot(pole.x, pole.y));
+    return found;
+  };
+  const auto first = distances(0), last = distances(1);
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_NEAR(first.front(), 1, 0.01);
+  ASSERT_EQ(last.size(), 1u);
+  EXPECT_NEAR(last.front(), 1.1, 0.01);
 }
 
 // Packets that are lost, or a first turn that is cut short, do not end a drive.

@@ -123,7 +123,7 @@ struct ObservationPoleExtractor::Impl {
                const mrpt::poses::CPose3D& sensorPose);
   LidarFrame frameOf(const mrpt::poses::CPose3D& sensorPose) const;
   PoleExtractor& extractorFor(const LidarFrame& frames);
-  ScanTiming timingOf(const PointsView& cloud) const;
+  ScanTiming timingOf(PointsView& cloud) const;
   void setTimeOffsets(const LidarFrame& frames, const ScanTiming& timing,
                       std::vector<PoleDetection>& poles) const;
   /// Whether the last points read are those of a depth image.
@@ -151,15 +151,20 @@ PoleExtractor& ObservationPoleExtractor::Impl::extractorFor(const LidarFrame& fr
   return *cameraExtractor;
 }
 
-/// \param cloud The last points read.
-ScanTiming ObservationPoleExtractor::Impl::timingOf(const PointsView& cloud) const {
+/// \param cloud The last points read. Where their order tells the begin, one turn of them is left,
+///        that of the time stamp.
+ScanTiming ObservationPoleExtractor::Impl::timingOf(PointsView& cloud) const {
   ScanTiming timing = sensor.timing;
   if (timing.turn == Turn::automatic) {
     timing = points.timing().value_or(recorded);
     timing.clock += sensor.timing.clock;
   }
   if (!timing.known() || !timing.movingCut) return timing;
-  const auto order = pointOrder(cloud);
+  auto order = pointOrder(cloud);
+  if (order && order->sweep > kMoreThanATurn) {
+    cloud = oneTurn(cloud, *order, timing.stamp);
+    order = pointOrder(cloud);
+  }
   if (!order && cloud.size < SensorConfigCheck::kFewestPoints)
     timing.turn = Turn::compensated;  // nothing to correct
   else if (!order)
@@ -220,15 +225,16 @@ CObservationPoles::Ptr ObservationPoleExtractor::process(
   m_impl->report = ExtractionReport();
   readingPoints(observation, [&] {
     const ObservationPoints::Loan loan(m_impl->points);
-    const PointsView cloud = m_impl->points.read(observation);
+    PointsView cloud = m_impl->points.read(observation);
     if (cloud.size > 0) {
       const LidarFrame frames = m_impl->frameOf(result->sensorPose);
       m_impl->compare(observation, cloud, result->sensorPose);
+      const ScanTiming timing = m_impl->timingOf(cloud);
       const PointsView points = m_impl->moved.toLidar(cloud, frames);
       PoleExtractor& extractor = m_impl->extractorFor(frames);
       result->poles = extractor.extract(points, upright(frames));
       m_impl->report = extractor.report();
-      m_impl->setTimeOffsets(frames, m_impl->timingOf(cloud), result->poles);
+      m_impl->setTimeOffsets(frames, timing, result->poles);
       result->visibilityRange = planarVisibilityRange(frames, extractor.visibilityRange());
       for (auto& pole : result->poles)
         toPlanar(
