@@ -215,8 +215,8 @@ std::vector<PresetFit> fitPresets(const BeamTableEstimate& beams) {
   return fits;
 }
 
-double rounded(double value, double unit) {
-  return std::round(value / unit) * unit;
+double rounded(double value, double perMetre) {
+  return std::round(value * perMetre) / perMetre;
 }
 
 void measureRanges(const std::vector<PointsView>& scans, SensorIdentification& result) {
@@ -320,7 +320,7 @@ const PresetFit* SensorIdentification::preset() const {
 SensorOptions SensorIdentification::options() const {
   SensorOptions options;
   const auto significant = [](double length) {
-    return std::abs(length) < 0.01 ? 0 : rounded(length, 0.001);
+    return std::abs(length) < 0.01 ? 0 : rounded(length, 1000);
   };
   options.originX = significant(beams.origin.x);
   options.originY = significant(beams.origin.y);
@@ -339,14 +339,14 @@ SensorOptions SensorIdentification::options() const {
     options.originZ = significant(two && std::abs(apex) < 0.5 ? 0 : apex);
     if (two) {
       options.lowerElevations = beams.blocks.back().elevations;
-      options.upperApex = rounded(apex - options.originZ, 0.001);
-      options.lowerApex = rounded(beams.blocks.back().apex - options.originZ, 0.001);
+      options.upperApex = rounded(apex - options.originZ, 1000);
+      options.lowerApex = rounded(beams.blocks.back().apex - options.originZ, 1000);
     }
     options.columns = std::max(90, columns);
   }
   if (ground)
     options.height =
-        rounded(ground->heightOf({options.originX, options.originY, options.originZ}), 0.01);
+        rounded(ground->heightOf({options.originX, options.originY, options.originZ}), 100);
   return options;
 }
 
