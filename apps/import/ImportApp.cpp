@@ -72,9 +72,13 @@ void declareSensor(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->needs(turn);
-  cli.add_option("--cut-deg", texts.cutDeg, "Azimuth at which a scan begins and ends, deg")
-      ->capture_default_str()
-      ->needs(turn);
+  auto* cut =
+      cli.add_option("--cut-deg", texts.cutDeg, "Azimuth at which a scan begins and ends, deg")
+          ->capture_default_str()
+          ->needs(turn);
+  cli.add_flag("--moving-cut", texts.timing.movingCut, "Each scan begins at its first point")
+      ->needs(turn)
+      ->excludes(cut);
   cli.add_option("--stamp-turn", texts.timing.stamp,
                  "Moment of the time stamps, as a share of the turn: 0 its begin, 1 its end")
       ->check(CLI::Range(0.0, 1.0))

@@ -60,6 +60,9 @@ TEST_F(ImportApp, KeepsTheMeasuringTimesInTheRawlog) {
   for (const char* line :
        {"turn = counterclockwise", "cut_deg = -90", "turn_s = 0.05", "stamp_turn = 1"})
     EXPECT_HAS(comment, line);
+  EXPECT_EQ(run("folder", {"--turn", "clockwise", "--moving-cut"}).code, 0);
+  EXPECT_HAS(commentOf(folder / "out.rawlog"), "moving_cut = true");
+  EXPECT_EQ(run("folder", {"--turn", "clockwise", "--moving-cut", "--cut-deg", "9"}).code, 2);
   writeText(folder / "in" / "scan_timing.ini", "[scan_timing]\nturn = clockwise\n");
   EXPECT_EQ(run("folder").code, 0);
   EXPECT_HAS(commentOf(folder / "out.rawlog"), "turn = clockwise");
