@@ -32,7 +32,8 @@ std::vector<std::string> turnDoubts(const SequenceCounts& counts, const ScanTimi
   std::vector<std::string> doubts;
   for (const auto& [label, turn] : counts.untoldTurns)
     doubts.push_back("scans of " + (label.empty() ? "the LiDAR" : label) +
-                     " look raw: their points are in the order of measuring, " + name(turn.turn) +
+                     (turn.hasSetCut ? " are not cut at one azimuth" : " look raw") +
+                     ": their points are in the order of measuring, " + name(turn.turn) +
                      ", and begin up to " + io::fixed(turn.arc / degree, 0) +
                      " deg apart; set [sensor] turn = " + name(turn.turn) +
                      ", moving_cut = true to correct them for the motion during a turn, or turn = "

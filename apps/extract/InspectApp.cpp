@@ -61,7 +61,8 @@ void printSweep(std::ostream& out, std::vector<PointOrder> orders) {
   out << "sweep             " << degrees(middle->sweep, 0)
       << " deg a scan, of which moving_cut = true uses 360. A turn takes "
       << io::fixed(2 * M_PI / middle->sweep, 3)
-      << "\n                  of the time between scans; state it with --turn-s\n";
+      << "\n                  of the time between scans: where that is 0.1 s, give --turn-s "
+      << io::fixed(0.1 * 2 * M_PI / middle->sweep, 4) << " here\n";
 }
 
 void printMounting(std::ostream& out, const RawlogInspection& inspection) {

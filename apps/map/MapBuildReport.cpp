@@ -168,6 +168,7 @@ void tellPoses(std::ostream& out, const MapBuildSummary& summary, const MapBuild
   const FixFit fixes = allFixes(mapped);
   const bool alone = std::all_of(summary.filled.begin(), summary.filled.end(),
                                  [](const FilledMotions& filled) { return filled.all; });
+  const bool isDoubted = !warningsOf(summary, job).empty();
   std::size_t guesses = 0;
   for (const FilledMotions& filled : summary.filled) guesses += filled.coasted;
   out << (alone ? "poses by " : "poses by odometry and ") << mapped.tracks
@@ -175,7 +176,11 @@ void tellPoses(std::ostream& out, const MapBuildSummary& summary, const MapBuild
       << " places passed again; the last pose is certain to "
       << io::fixed(sigmaOf(mapped.poses.back()), 2)
       << (fixes.given + mapped.known > 0 ? " m" : " m against the first")
-      << (guesses > 0 ? ", if " + std::to_string(guesses) + " guessed motions are right\n" : "\n");
+      << (guesses == 1  ? ", if one guessed motion is right"
+          : guesses > 0 ? ", if " + std::to_string(guesses) + " guessed motions are right"
+          : isDoubted   ? ", apart from what the warnings tell"
+                        : "")
+      << '\n';
   if (fixes.given > 0)
     out << "placed by " << fixes.fitting
         << " positions from satellites; the first pose is certain to "

@@ -57,9 +57,11 @@ std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped
   return doubt +
          "if nothing corrected them, set [sensor] turn, and cut_deg or moving_cut, as pole-extract "
          "--inspect finds them in the scans, and extract the poles again (by the poles "
-         "alone, of an upright LiDAR with a fixed cut, turn = " +
-         name(found.timing.turn) + " and cut_deg = " + io::fixed(found.timing.cut / degree, 0) +
-         " fit best); if the rawlog states a turn, " + corrected;
+         "alone, turn = " +
+         name(found.timing.turn) +
+         " fits best; they do not tell whether each scan was cut at one azimuth); if the rawlog "
+         "states a turn, " +
+         corrected;
 }
 
 /// Clocks are searched only on a suspicion: it takes much longer.

@@ -259,6 +259,21 @@ TEST_F(InspectApp, RawScansAreToldByMapsAndPosesToo) {
   const Outcome localized =
       runProgram(localizeMain, {"--map", at("street.polemap"), "--output", at("poses")}, drive);
   EXPECT_HAS(localized.err, told);
+  const Outcome mapped = runProgram(mapMain, {"build", "--config", "vlp16.ini", "--input",
+                                              at("drive.rawlog"), "--output", at("found.polemap")});
+  EXPECT_HAS(mapped.out, " against the first, apart from what the warnings tell\n");
+}
+
+TEST_F(InspectApp, ACutThatDoesNotFitIsTold) {
+  importCutAnew("40");
+  const auto told = [&](const std::string& movingCut) {
+    return succeeded(run({"--quiet", "--config", "vlp16.ini", "--input", at("in.rawlog"),
+                          "--output", at("poles.rawlog"), "--set", "sensor.turn=clockwise", "--set",
+                          "sensor.moving_cut=" + movingCut}))
+        .err;
+  };
+  EXPECT_HAS(told("false"), "in.rawlog: scans of lidar are not cut at one azimuth: ");
+  EXPECT_EQ(told("true"), "");
 }
 
 TEST_F(InspectApp, PolesOfAnotherTurnAreTold) {

@@ -54,12 +54,12 @@ TEST(TimingDoubt, SeesScansThatWereNotCorrected) {
   EXPECT_EQ(found.timing.turn, Turn::clockwise);
   const std::string doubt = timingDoubt(found, kNothing, {});
   EXPECT_HAS(doubt, "not look corrected");
-  EXPECT_HAS(doubt, "turn = clockwise and cut_deg = 180 ");
+  EXPECT_HAS(doubt, "turn = clockwise fits best");
   EXPECT_EQ(timingDoubt(found, kNothing, {}, true), "") << "the order of the points tells the turn";
   // What is left after a correction is no turn to set.
   const std::string after = timingDoubt(found, kNothing, {Turn::clockwise, 0.2, M_PI, 0.5});
   EXPECT_HAS(after, "check turn, cut_deg, turn_s and the times of the scans");
-  EXPECT_EQ(after.find("fit best"), std::string::npos);
+  EXPECT_EQ(after.find("fits best"), std::string::npos);
 }
 
 TEST(TimingDoubt, OfTruePosesToo) {

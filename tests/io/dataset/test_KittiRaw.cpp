@@ -245,16 +245,6 @@ TEST_F(KittiRawTest, BlankLinesAtTheEndOfTheTimesCountForNothing) {
   EXPECT_EQ(readDrive().scans.size(), 5u);
 }
 
-TEST_F(KittiRawTest, RefusesUnpaddedNumbers) {
-  write("drive/oxts/data/10.txt", "");
-  write("drive/oxts/data/9.txt", "");
-  EXPECT_REFUSED(readDrive(), "9.txt", "same number of digits");
-  fs::remove_all(path("drive/velodyne_points/data"));
-  write("drive/velodyne_points/data/10.bin", "");
-  write("drive/velodyne_points/data/9.bin", "");
-  EXPECT_REFUSED(readDrive(), "9.bin", "same number of digits");
-}
-
 TEST_F(KittiRawTest, RefusesMalformedOxts) {
   addOxts(3, "49 8.4 112 0 0 0\n");
   EXPECT_REFUSED(readDrive(), frameName(3, ".txt") + ":1: ", "6 numbers, 30 expected");

@@ -181,9 +181,11 @@ TEST_F(ScanFolderTest, RefusesAScanThatIsALinkToNothing) {
                  "No such file or directory");
 }
 
-TEST_F(ScanFolderTest, RefusesUnpaddedNumbers) {
+TEST_F(ScanFolderTest, NumbersNeedNoZeros) {
   renameScans("9", "10", "11");
-  EXPECT_REFUSED(readScanFolder(m_folder, kIdentity), "same number of digits");
+  const auto scans = readScanFolder(m_folder, kIdentity).scans;
+  EXPECT_EQ(scans.front().cloud.filename(), "9.bin");
+  EXPECT_EQ(scans.back().cloud.filename(), "11.bin");
 }
 
 TEST_F(ScanFolderTest, ReadsTheRealDrive) {

@@ -15,21 +15,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Compares names by the numbers in them: 9 is before 10.
-bool isBefore(const fs::path& file, const fs::path& other) {
-  const std::string name = file.stem().string(), otherName = other.stem().string();
-  const auto number = parseNumber(name), otherNumber = parseNumber(otherName);
-  if (number && otherNumber) return *number < *otherNumber;
-  return strverscmp(name.c_str(), otherName.c_str()) < 0;
-}
-
-void requirePaddedNames(const std::vector<fs::path>& files) {
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    if (isBefore(files[i], files[i - 1])) {
-      throw Error(files[i].string() + ": sorts after " + files[i - 1].filename().string() +
-                  " by name but before it by number; give all names the same number of digits");
-    }
-  }
+/// Sorts names by the numbers in them: 9 is before 10. What is alike stays in the order of bytes.
+void sortByNumbers(std::vector<fs::path>& files) {
+  const auto numberOf = [](const fs::path& file) { return parseNumber(file.stem().string()); };
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return a.filename().native() < b.filename().native();
+  });
+  const bool isNumbered = std::all_of(files.begin(), files.end(), numberOf);
+  std::stable_sort(files.begin(), files.end(), [&](const fs::path& a, const fs::path& b) {
+    if (isNumbered) return *numberOf(a) < *numberOf(b);
+    return strverscmp(a.stem().c_str(), b.stem().c_str()) < 0;
+  });
 }
 
 constexpr std::size_t kBytesOfFive = 20;  ///< five float32
@@ -87,10 +83,7 @@ std::vector<fs::path> listFiles(const fs::path& folder, const std::string& endin
   }
   if (error) throw Error("cannot read the folder " + folder.string() + ": " + error.message());
   if (files.empty()) throw Error(folder.string() + ": no *" + ending + " file in it");
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return a.filename().native() < b.filename().native();
-  });
-  requirePaddedNames(files);
+  sortByNumbers(files);
   return files;
 }
 

@@ -9,9 +9,9 @@
 
 namespace polemcl::io {
 
-/// \brief Absolute paths of the files in a folder with this extension, sorted by the bytes of their
-/// names. Hidden files are left out. \throws Error when the folder does not exist or has no such
-/// file, or when names are numbers that do not sort as numbers (10.bin before 2.bin).
+/// \brief Absolute paths of the files in a folder with this extension, sorted by the numbers in
+/// their names: 2.bin is before 10.bin. Hidden files are left out. \throws Error when the folder
+/// does not exist or has no such file.
 std::vector<std::filesystem::path> listFiles(const std::filesystem::path& folder,
                                              const std::string& ending);
 

@@ -65,6 +65,8 @@ class Stream {
   void fuse(Task& task, const std::vector<CObservationPoles::Ptr>& parts) const;
   void count(const ReadScan& scan);
   void countLidars(const Task& task);
+  /// What the settings say of a LiDAR.
+  const ScanTiming& timingOf(const std::string& label) const;
 
   std::string m_name;
   decltype(SequenceOptions::pace) m_pace;
@@ -217,6 +219,12 @@ std::string reasonOf(const std::exception_ptr& failure) {
   }
 }
 
+const ScanTiming& Stream::timingOf(const std::string& label) const {
+  for (std::size_t i = 0; i < m_lidars.size(); ++i)
+    if (m_lidars[i].label == label) return m_sensors[i].timing;
+  return m_sensors.front().timing;
+}
+
 SequenceCounts Stream::finish() const {
   SequenceCounts counts = m_counts;
   // A drive cannot be repeated: what came before the failure counts.
@@ -233,7 +241,7 @@ SequenceCounts Stream::finish() const {
     lidar.apartSigmas = std::sqrt(lidar.apartSigmas / (2 * poles));
   }
   for (const auto& [label, turns] : m_turns)
-    if (const auto found = turns.found()) counts.untoldTurns.emplace(label, *found);
+    if (const auto found = turns.found(timingOf(label))) counts.untoldTurns.emplace(label, *found);
   counts.otherSensors = m_source.otherSensors();
   counts.otherLabels = m_source.otherLabels();
   counts.otherOdometry = m_source.otherOdometry();

@@ -1,8 +1,16 @@
 #include "mrpt/rawlog/UntoldTurn.h"
 
+#include "core/common/Angles.h"
 #include "mrpt/observation/ObservationPoints.h"
 
 namespace polemcl {
+namespace {
+
+bool hasSetCut(const ScanTiming& set) {
+  return set.known() && !set.movingCut;
+}
+
+}  // namespace
 
 bool UntoldTurnSearch::wants(std::size_t ordinal) {
   return ordinal > 0 && (ordinal & (ordinal - 1)) == 0;  // a power of two
@@ -15,18 +23,21 @@ void UntoldTurnSearch::add(const std::optional<PointOrder>& order) {
     m_orders.push_back(*order);
 }
 
-std::optional<UntoldTurn> UntoldTurnSearch::found() const {
+std::optional<UntoldTurn> UntoldTurnSearch::found(const ScanTiming& set) const {
   constexpr std::size_t kFewest = 3;
+  // Where returns are missing, whole turns seem to begin up to 60 degrees later.
+  constexpr double kAgainstSetCut = 70 * degree;
   if (m_isOther || m_orders.size() < kFewest) return std::nullopt;
   const double arc = beginArc(m_orders);
-  if (arc <= kMovingBegin) return std::nullopt;
-  return UntoldTurn{m_orders.front().turn, arc};
+  if (arc <= (hasSetCut(set) ? kAgainstSetCut : kMovingBegin)) return std::nullopt;
+  return UntoldTurn{m_orders.front().turn, arc, hasSetCut(set)};
 }
 
 std::optional<PointOrder> untoldOrder(const mrpt::obs::CObservation& scan,
                                       const SensorOptions& sensor, const ScanTiming& recorded) {
-  if (sensor.timing.turn != Turn::automatic || recorded.turn != Turn::automatic)
-    return std::nullopt;
+  const ScanTiming& set = sensor.timing;
+  const bool isUntold = set.turn == Turn::automatic && recorded.turn == Turn::automatic;
+  if (!isUntold && !hasSetCut(set)) return std::nullopt;
   ObservationPoints points(sensor);
   const ObservationPoints::Loan loan(points);
   const PointsView cloud = points.read(scan);
