@@ -38,7 +38,8 @@ std::string gapOfNumbers(const Scans& scans) {
     if (before && number && *number != *before + 1)
       return ", though numbers are missing, first between " +
              scans.files[i - 1].filename().string() + " and " + scans.files[i].filename().string() +
-             ": wrong times spoil the correction of moving scans and the poles' motion";
+             ": wrong times spoil the correction of moving scans and the poles' motion. If all "
+             "were recorded 0.1 s apart, write times.txt with 0.1 times the number of each";
   }
   return {};
 }
