@@ -316,7 +316,7 @@ TEST_F(InspectApp, ScansOfMoreThanATurnAreTold) {
   for (const std::size_t scan : found.sensor.used)
     measured += static_cast<double>(readText(folder / "in" / "velodyne" / scanName(scan)).size()) /
                 sizeof(std::array<float, 4>);
-  // Of a turn and 0.12, one turn is left; points are denser to one side than to another.
+  // A scan has 1.12 turns, of which one is used. Its points are not spread evenly.
   EXPECT_NEAR(static_cast<double>(found.sensor.sensor.points) / measured, 1 / 1.12, 0.05);
 }
 

@@ -26,11 +26,13 @@ class Sweep {
     if (steps == 0) begin = azimuth;
     const double step = steps == 0 ? 0 : std::remainder(azimuth - m_before, 2 * M_PI);
     m_before = azimuth;
-    if (std::abs(step) < kLongestStep)
+    if (std::abs(step) < kLongestStep) {
       turned += step;
-    else
+    } else {
       ++jumps;
-    const double gone = turned + std::remainder(azimuth - begin - turned, 2 * M_PI);
+      m_jumped = std::remainder(azimuth - begin - turned, 2 * M_PI);
+    }
+    const double gone = turned + m_jumped;
     m_left = std::max(m_left, gone);
     m_right = std::max(m_right, -gone);
     if (steps++ > m_firstSteps) return;
@@ -48,6 +50,7 @@ class Sweep {
   static constexpr std::size_t kFirstShare = 500;
   std::size_t m_firstSteps;
   double m_before = 0;
+  double m_jumped = 0;                                                ///< by all jumps so far, rad
   double m_left = 0, m_right = 0, m_firstLeft = 0, m_firstRight = 0;  ///< farthest, rad
 };
 
