@@ -91,7 +91,7 @@ std::pair<std::size_t, std::size_t> turnOf(double step, double stamp) {
   const PointsView points{x.data(), y.data(), z.data(), x.size()};
   const PointOrder order = pointOrder(points).value();
   EXPECT_NEAR(order.sweep, 399 * M_PI / 180, 1e-3);
-  const PointsView one = oneTurn(points, order, stamp);
+  const PointsView one = oneTurn(points, order, stamp).points;
   return {static_cast<std::size_t>(one.x - points.x), one.size};
 }
 
@@ -105,6 +105,24 @@ TEST(PointOrder, OfMoreThanATurnOneIsTaken) {
     EXPECT_NEAR(static_cast<double>(last.first), 39, 1);
     EXPECT_EQ(last.first + last.second, 371u) << "to the end";
   }
+}
+
+/// As a recorder of an HDL-32E does it now and then.
+TEST(PointOrder, AFiringAtAWrongAzimuthDoesNotMoveTheTurn) {
+  std::vector<double> azimuths = turn(100, -0.01, 400);
+  for (std::size_t i = 1000; i < 1026; ++i) azimuths[i] -= 90;
+  std::vector<float> x, y;
+  for (const double azimuth : azimuths) {
+    x.push_back(static_cast<float>(10 * std::cos(azimuth * M_PI / 180)));
+    y.push_back(static_cast<float>(10 * std::sin(azimuth * M_PI / 180)));
+  }
+  const PointsView points{x.data(), y.data(), y.data(), x.size()};
+  const PointOrder order = pointOrder(points).value();
+  EXPECT_NEAR(order.sweep, 400 * M_PI / 180, 0.02);
+  const OneTurn one = oneTurn(points, order, 0.5);
+  EXPECT_NEAR(one.begin, 80 * M_PI / 180, 0.01);
+  EXPECT_NEAR(static_cast<double>(one.points.x - points.x), 2000, 160) << "two blocks of 80";
+  EXPECT_NEAR(static_cast<double>(one.points.size), 36000, 160);
 }
 
 TEST(PointOrder, TurnsBeginWithinAnArcUnlessTheyTurnDifferentWays) {

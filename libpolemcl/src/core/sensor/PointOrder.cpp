@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace polemcl {
 namespace {
@@ -18,7 +19,7 @@ class Sweep {
   double begin = 0, turned = 0;  ///< rad
 
   /// \param points In all.
-  explicit Sweep(std::size_t points) : m_firstSteps(points / kFirstShare) {}
+  explicit Sweep(std::size_t points) : m_blockSize(std::max<std::size_t>(1, points / kBlocks)) {}
 
   void add(double x, double y) {
     if (!(std::hypot(x, y) > kNearestPoint)) return;  // also those that are no numbers
@@ -32,26 +33,35 @@ class Sweep {
       ++jumps;
       m_jumped = std::remainder(azimuth - begin - turned, 2 * M_PI);
     }
-    const double gone = turned + m_jumped;
-    m_left = std::max(m_left, gone);
-    m_right = std::max(m_right, -gone);
-    if (steps++ > m_firstSteps) return;
-    m_firstLeft = m_left;
-    m_firstRight = m_right;
+    ++steps;
+    m_block.push_back(turned + m_jumped);
+    if (m_block.size() == m_blockSize) endBlock();
   }
 
-  /// How far the foremost laser has gone, also where returns are missing, rad.
+  /// How far the LiDAR has turned to this side, also where returns are missing, rad.
   double swept(Turn turn) const {
-    return turn == Turn::clockwise ? m_right - m_firstRight : m_left - m_firstLeft;
+    return turn == Turn::clockwise ? m_right : m_left;
   }
 
  private:
-  /// The first firings are the first 1/500 of the points.
-  static constexpr std::size_t kFirstShare = 500;
-  std::size_t m_firstSteps;
+  /// Points are judged in blocks, by their median: some recorders write a firing at a wrong azimuth.
+  static constexpr std::size_t kBlocks = 500;
+  std::size_t m_blockSize;
+  std::vector<double> m_block;  ///< azimuths since the begin, rad
   double m_before = 0;
-  double m_jumped = 0;                                                ///< by all jumps so far, rad
-  double m_left = 0, m_right = 0, m_firstLeft = 0, m_firstRight = 0;  ///< farthest, rad
+  double m_jumped = 0;             ///< by all jumps so far, rad
+  std::size_t m_blocks = 0;
+  double m_first = 0;              ///< median of the first block, rad
+  double m_left = 0, m_right = 0;  ///< farthest of the blocks from the first, rad
+
+  void endBlock() {
+    const auto middle = m_block.begin() + static_cast<std::ptrdiff_t>(m_block.size() / 2);
+    std::nth_element(m_block.begin(), middle, m_block.end());
+    if (m_blocks++ == 0) m_first = *middle;
+    m_left = std::max(m_left, *middle - m_first);
+    m_right = std::max(m_right, m_first - *middle);
+    m_block.clear();
+  }
 };
 
 }  // namespace
@@ -67,8 +77,8 @@ std::optional<PointOrder> pointOrder(const PointsView& points) {
   return PointOrder{turn, sweep.begin, arc, sweep.swept(turn)};
 }
 
-PointsView oneTurn(const PointsView& points, const PointOrder& order, double stamp) {
-  if (order.sweep <= kMoreThanATurn) return points;
+OneTurn oneTurn(const PointsView& points, const PointOrder& order, double stamp) {
+  if (order.sweep <= kMoreThanATurn) return {points, order.begin};
   const double from = stamp * (order.sweep - 2 * M_PI);
   std::size_t begin = 0, end = 0;
   Sweep sweep(points.size);
@@ -78,7 +88,8 @@ PointsView oneTurn(const PointsView& points, const PointOrder& order, double sta
     if (swept < from) begin = i + 1;
     if (swept <= from + 2 * M_PI) end = i + 1;
   }
-  return {points.x + begin, points.y + begin, points.z + begin, end - begin};
+  return {{points.x + begin, points.y + begin, points.z + begin, end - begin},
+          wrapAngle(order.turn == Turn::clockwise ? order.begin - from : order.begin + from)};
 }
 
 bool PointOrder::isWhole() const {

@@ -25,11 +25,17 @@ struct PointOrder {
 /// none.
 std::optional<PointOrder> pointOrder(const PointsView& points);
 
+/// \brief A scan, or a turn of it.
+struct OneTurn {
+  PointsView points;
+  double begin = 0;  ///< azimuth at which it begins, rad, frame of the points
+};
+
 /// \brief One turn of a scan that has more, as from drivers that count packets; else the scan.
 /// \param order pointOrder() of the points.
 /// \param stamp Which turn, in [0, 1]: 0 the first, 1 the last, 0.5 the one in the middle. If it is
 ///        the moment of the time stamp, it is the same moment of the turn that is left.
-PointsView oneTurn(const PointsView& points, const PointOrder& order, double stamp);
+OneTurn oneTurn(const PointsView& points, const PointOrder& order, double stamp);
 
 /// \brief The arc in which turns begin, rad; 0 if they turn different ways, or there are none.
 double beginArc(const std::vector<PointOrder>& orders);

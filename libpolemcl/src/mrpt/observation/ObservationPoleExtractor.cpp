@@ -160,19 +160,17 @@ ScanTiming ObservationPoleExtractor::Impl::timingOf(PointsView& cloud) const {
     timing.clock += sensor.timing.clock;
   }
   if (!timing.known() || !timing.movingCut) return timing;
-  auto order = pointOrder(cloud);
-  if (order && order->sweep > kMoreThanATurn) {
-    cloud = oneTurn(cloud, *order, timing.stamp);
-    order = pointOrder(cloud);
+  if (const auto order = pointOrder(cloud)) {
+    const OneTurn turn = oneTurn(cloud, *order, timing.stamp);
+    cloud = turn.points;
+    timing.cut = turn.begin;
+    return timing;
   }
-  if (!order && cloud.size < SensorConfigCheck::kFewestPoints)
-    timing.turn = Turn::compensated;  // nothing to correct
-  else if (!order)
+  if (cloud.size >= SensorConfigCheck::kFewestPoints)
     throw Error(
         "the points of the cloud are not in the order of measuring, so moving_cut = true finds no "
         "begin of the scan; cut_deg names a fixed one");
-  else
-    timing.cut = order->begin;
+  timing.turn = Turn::compensated;  // nothing to correct
   return timing;
 }
 

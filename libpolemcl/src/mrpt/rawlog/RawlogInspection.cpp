@@ -122,7 +122,7 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
   for (const io::Cloud& cloud : clouds) views.push_back(cloud.view());
   result.orders = ordersOf(views);
   for (PointsView& view : views)
-    if (const auto order = pointOrder(view)) view = oneTurn(view, *order, 0);
+    if (const auto order = pointOrder(view)) view = oneTurn(view, *order, 0).points;
   const auto& first = *scans.front().parts.front().observation;
   result.label = std::string(first.GetRuntimeClass()->className) +
                  (first.sensorLabel.empty() ? "" : " " + first.sensorLabel);
