@@ -108,6 +108,20 @@ void draw(const ReadScan& scan, const AllSettings& settings, const ExtractOption
   if (options.rangeImage) drawRangeImage(scan, settings, title, *options.rangeImage);
 }
 
+/// What went wrong; empty: nothing. It is no reason to lose the poles.
+std::string tryToDraw(const std::optional<ReadScan>& scan, const ExtractSummary& summary,
+                      const AllSettings& settings, const ExtractOptions& options) {
+  if (!scan)
+    return options.input.string() + ": no scan " + std::to_string(options.pngScan) +
+           " to draw; there are " + std::to_string(summary.counts.scans) + ", numbered from 0";
+  try {
+    draw(*scan, settings, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
 void print(const ExtractSummary& summary, const ExtractOptions& options) {
   const auto& counts = summary.counts;
   const auto& sum = summary.extraction;
@@ -171,16 +185,13 @@ ExtractSummary extractPoles(const ExtractOptions& options, const AllSettings& se
   if (summary.counts.scans == summary.counts.emptyScans)
     throw Error(options.input.string() + ": no usable scan, " +
                 std::to_string(summary.counts.emptyScans) + " scans in it, all without a point");
-  if (drawing && !drawn)
-    throw Error(options.input.string() + ": no scan " + std::to_string(options.pngScan) +
-                " to draw; there are " + std::to_string(summary.counts.scans) +
-                ", numbered from 0");
   gnss.writeRest();
   io::AtomicFiles together;
-  if (drawn) draw(*drawn, settings, options);
+  const std::string undrawn = drawing ? tryToDraw(drawn, summary, settings, options) : "";
   if (csv) csv->commit();
   rawlog.commit();
   together.commit();
+  if (!undrawn.empty()) throw Error(undrawn + "; the poles are written");
   return summary;
 }
 

@@ -11,6 +11,8 @@
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
+#include "io/file/Bytes.h"
+#include "io/file/InstalledFiles.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -20,10 +22,11 @@ constexpr double kUsualDistance = 0.08;  ///< m; see share/doc/motion.md
 constexpr double kHalfSure = 2;          ///< standard errors by which a turn is worth a try
 
 /// Models with a configuration of their own.
-constexpr std::pair<const char*, const char*> kShipped[] = {
-    {"hdl64e", "kitti.ini (ranges: of KITTI's own)"},
-    {"hdl32e", "hdl32e.ini"},
-    {"vlp16", "vlp16.ini"}};
+constexpr struct {
+  const char *model, *file, *remark;
+} kShipped[] = {{"hdl64e", "kitti.ini", " (ranges: of KITTI's own)"},
+                {"hdl32e", "hdl32e.ini", ""},
+                {"vlp16", "vlp16.ini", ""}};
 
 std::string degrees(double radians, int digits = 2) {
   return io::fixed(radians / degree, digits);
@@ -109,9 +112,10 @@ void printPresets(std::ostream& out, const RawlogInspection& inspection) {
   if (const PresetFit* fit = sensor.preset()) {
     out << "fits              model = " << fit->model
         << (fit->upsideDown ? ", upside_down = true" : "") << '\n';
-    for (const auto& [model, file] : kShipped)
-      if (fit->model == model)
-        out << "                  config/" << file << " has settings chosen for this LiDAR\n";
+    for (const auto& shipped : kShipped)
+      if (fit->model == shipped.model)
+        out << "                  config/" << shipped.file << shipped.remark
+            << " has settings chosen for this LiDAR\n";
   } else
     out << "fits              no preset; model = table with the elevations above\n";
 }
@@ -344,8 +348,20 @@ void searchDrive(const InspectOptions& options, Inspection& result, const ScanPr
     result.timing->candidate = {};  // a single cut, which does not fit them
 }
 
-/// Only what was looked for: all other keys keep their defaults. A timing that was not found but
-/// may be right is a comment.
+/// What the configuration that ships for this model sets beside [sensor], as text of an INI file.
+std::string chosenFor(const PresetFit* fit) {
+  for (const auto& shipped : kShipped) {
+    if (!fit || fit->model != shipped.model) continue;
+    const std::string text = io::readBytes(io::installedFile(shipped.file, "config"));
+    const std::size_t others = text.find("\n[", text.find("[sensor]"));
+    if (others != std::string::npos)
+      return std::string("\n# As config/") + shipped.file + text.substr(others);
+  }
+  return {};
+}
+
+/// What was looked for, and what was chosen for this LiDAR: all other keys keep their defaults. A
+/// timing that was not found but may be right is a comment.
 void saveSensor(const Inspection& inspection, const std::filesystem::path& file) {
   AllSettings settings = settingsFor(inspection);
   ConfigWriter writer(Tier::tuning);
@@ -355,7 +371,7 @@ void saveSensor(const Inspection& inspection, const std::filesystem::path& file)
       file.string(),
       (likely ? "# Unless the scans were corrected for motion: " + settingsOf(*likely) + "\n\n"
               : "") +
-          writer.text());
+          writer.text() + chosenFor(inspection.sensor.sensor.preset()));
 }
 
 }  // namespace

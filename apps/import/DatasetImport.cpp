@@ -106,10 +106,26 @@ class MotionSource {
   bool m_started = false;
 };
 
+/// Empty where a damaged scan is to be left out.
+io::Cloud cloudOf(const io::ScanFolder& folder, const io::ScanEntry& scan,
+                  const ImportOptions& options, ImportReport& report) {
+  try {
+    return folder.read ? folder.read(scan) : io::readKittiBin(scan.cloud);
+  } catch (const Error& error) {
+    if (options.dataset != Dataset::pcd) throw;
+    if (!options.skipDamaged)
+      throw Error(std::string(error.what()) + "; --skip-damaged leaves such scans out");
+    ++report.damagedScans;
+    report.notes.push_back(std::string("left out: ") + error.what());
+    return {};
+  }
+}
+
 /// The cloud as an observation; none when the scan is empty. Counts points in the report.
 mrpt::obs::CObservationPointCloud::Ptr makeObservation(const io::ScanFolder& folder,
                                                        const io::ScanEntry& scan,
                                                        const Eigen::Isometry3d& T_robot_sensor,
+                                                       const ImportOptions& options,
                                                        ImportReport& report) {
   auto observation = mrpt::obs::CObservationPointCloud::Create();
   observation->sensorLabel = "lidar";
@@ -123,7 +139,7 @@ mrpt::obs::CObservationPointCloud::Ptr makeObservation(const io::ScanFolder& fol
         mrpt::obs::CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
     return observation;
   }
-  const auto cloud = folder.read ? folder.read(scan) : io::readKittiBin(scan.cloud);
+  const io::Cloud cloud = cloudOf(folder, scan, options, report);
   report.points += cloud.size();
   report.invalidPoints += cloud.invalid;
   if (cloud.size() == 0) return nullptr;
@@ -279,7 +295,7 @@ ImportReport importDataset(const ImportOptions& options,
       ++report.skipped;
       continue;
     }
-    const auto observation = makeObservation(folder, scan, T_robot_sensor, report);
+    const auto observation = makeObservation(folder, scan, T_robot_sensor, options, report);
     if (!observation) {
       ++report.emptyScans;
       continue;
@@ -295,7 +311,8 @@ ImportReport importDataset(const ImportOptions& options,
   }
   if (report.scans == 0)
     throw Error(options.input.string() + ": no usable scan, all " +
-                std::to_string(report.emptyScans) + " selected ones are empty");
+                std::to_string(report.emptyScans) + " selected ones are empty" +
+                (report.damagedScans > 0 ? " or damaged" : ""));
   gnss.writeRest();
   publish(rawlog, truthFile, truth);
   if (const auto note = climbNote(truth)) report.notes.push_back(*note);

@@ -100,6 +100,9 @@ void declareOwn(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& t
   if (dataset == Dataset::kittiRaw)
     addFolder(cli, "--calib", options.calibration,
               "Folder of calib_imu_to_velo.txt (default: the one that holds --input)");
+  if (dataset == Dataset::pcd)
+    cli.add_flag("--skip-damaged", options.skipDamaged,
+                 "Leave out files that cannot be read, and tell each");
   if (dataset != Dataset::rosbag2) return;
   auto& topics = options.topics;
   cli.add_option("--cloud-topic", topics.cloud, "Topic of the clouds, when there are several")
@@ -155,7 +158,9 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
 void printImport(const ImportReport& report, const ImportOptions& options) {
   std::cout << options.output.string() << ": " << report.scans << " scans";
   if (report.skipped > 0) std::cout << ", " << report.skipped << " left out as asked";
-  if (report.emptyScans > 0) std::cout << ", " << report.emptyScans << " empty ones dropped";
+  if (const std::size_t empty = report.emptyScans - report.damagedScans; empty > 0)
+    std::cout << ", " << empty << " empty ones dropped";
+  if (report.damagedScans > 0) std::cout << ", " << report.damagedScans << " damaged ones left out";
   if (report.embedded)
     std::cout << "; " << report.points << " points, " << report.invalidPoints
               << " invalid ones dropped";

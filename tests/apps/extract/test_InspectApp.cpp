@@ -130,7 +130,9 @@ TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
   EXPECT_NEAR(settings.sensor.height, 1.0, 0.1);
   const std::string text = readText(folder / "found.ini");
   EXPECT_TRUE(has(text, "[sensor]") && has(text, "clock_offset_s")) << text;
-  EXPECT_FALSE(has(text, "[scan_line]")) << "only what was looked for";
+  EXPECT_TRUE(has(text, "# As config/hdl32e.ini\n[likelihood]")) << text;
+  EXPECT_EQ(settings.likelihood.sigma, loadSettings("hdl32e.ini").likelihood.sigma);
+  EXPECT_FALSE(has(text, "[scan_line]")) << "only what was looked for or chosen";
   const Outcome extracted = succeeded(run(
       {"--config", at("found.ini"), "--input", at("in.rawlog"), "--output", at("poles.rawlog")}));
 }

@@ -108,6 +108,20 @@ TEST_F(ImportApp, ImportsPcdFilesIntoTheRawlog) {
   }
 }
 
+TEST_F(ImportApp, DamagedPcdFilesAreLeftOutIfAsked) {
+  const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nDATA ascii\n";
+  for (const char* name : {"1.pcd", "3.pcd"}) writeText(folder / "in" / name, head + "1 2 3\n");
+  writeText(folder / "in" / "2.pcd", head);
+  expectFailure(run("pcd"), {"2.pcd", "cut short", "--skip-damaged leaves such scans out"});
+  const Outcome outcome = succeeded(run("pcd", {"--skip-damaged"}));
+  for (const char* words : {"2 scans, 1 damaged ones left out", "note: left out: ", "2.pcd"})
+    EXPECT_HAS(outcome.out, words);
+  EXPECT_EQ(outcome.out.find("empty"), std::string::npos) << outcome.out;
+  for (const char* name : {"1.pcd", "3.pcd"}) writeText(folder / "in" / name, head);
+  expectFailure(run("pcd", {"--skip-damaged"}), {"all 3 selected ones are empty or damaged"});
+  expectFailure(run("folder"), {"no folder velodyne", "`pole-import pcd`"});
+}
+
 TEST_F(ImportApp, ImportsAFolder) {
   writeLine(folder / "in", 3);
   const Outcome outcome =

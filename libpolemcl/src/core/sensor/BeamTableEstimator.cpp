@@ -386,7 +386,8 @@ void measureSharpness(const std::vector<BeamPoint>& points, const BlockOrigins& 
        << " % of the returns lie near one (" << 100 * kLeastSharpness
        << " % are needed). Merged, voxel-thinned, noisy or levelled clouds have none, nor have "
           "those that were corrected for a fast motion; give single scans as the sensor measured "
-          "them, in its own axes, or take a configuration of this LiDAR (share/doc/lidars.md)";
+          "them, in its own axes, or set [sensor] model to this LiDAR, such as os0_64 "
+          "(share/doc/lidars.md)";
   throw Error(text.str());
 }
 

@@ -279,7 +279,7 @@ void DriveMapping::requireConnected() const {
     if (m_frames[i] != m_frames[0])
       throw Error(m_names.at(m_drives[i]) +
                   ": none of its places was found in the other drives; a map is made of drives "
-                  "that pass the same places, over at least 60 m: leave it out, or make another "
+                  "that pass the same places, over 60 m or so: leave it out, or make another "
                   "map of it");
 }
 
