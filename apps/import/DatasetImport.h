@@ -33,8 +33,8 @@ struct ImportOptions {
   /// Clouds inside the rawlog, not by absolute path; PCD, NCLT and bags always are.
   bool embed = false;
   bool skipDamaged = false;  ///< PCD files that cannot be read are dropped, as empty scans are
-  std::size_t every = 1;   ///< N: take scans K, K+N, …; at least 1
-  std::size_t offset = 0;  ///< K, from 0, less than the number of scans
+  std::size_t every = 1;     ///< N: take scans K, K+N, …; at least 1
+  std::size_t offset = 0;    ///< K, from 0, less than the number of scans
   /// K: odometry is the true motion with noise of σ = K·|component|, instead of the folder's.
   std::optional<double> odometryNoise;
   std::uint64_t seed = 0;  ///< of that noise
@@ -61,11 +61,11 @@ ScanTiming datasetTiming(Dataset dataset);
 
 /// \brief What an import did.
 struct ImportReport {
-  std::size_t scans = 0;       ///< written
-  std::size_t skipped = 0;     ///< left out by `every` and `offset`
-  std::size_t emptyScans = 0;  ///< dropped: no valid point; their motion went into the next one's
+  std::size_t scans = 0;         ///< written
+  std::size_t skipped = 0;       ///< left out by `every` and `offset`
+  std::size_t emptyScans = 0;    ///< dropped: no valid point; their motion went into the next one's
   std::size_t damagedScans = 0;  ///< dropped: see ImportOptions::skipDamaged; each has a note
-  std::size_t points = 0;      ///< valid ones, counted when embedded only
+  std::size_t points = 0;        ///< valid ones, counted when embedded only
   std::size_t invalidPoints = 0;  ///< dropped: NaN, infinite or at the sensor; embedded only
   bool embedded = false;          ///< clouds are inside the rawlog
   bool hasTruth = false;          ///< `S.tum` was written

@@ -39,17 +39,16 @@ class Sweep {
   }
 
   /// How far the LiDAR has turned to this side, also where returns are missing, rad.
-  double swept(Turn turn) const {
-    return turn == Turn::clockwise ? m_right : m_left;
-  }
+  double swept(Turn turn) const { return turn == Turn::clockwise ? m_right : m_left; }
 
  private:
-  /// Points are judged in blocks, by their median: some recorders write a firing at a wrong azimuth.
+  /// Points are judged in blocks, by their median: some recorders write a firing at a wrong
+  /// azimuth.
   static constexpr std::size_t kBlocks = 500;
   std::size_t m_blockSize;
   std::vector<double> m_block;  ///< azimuths since the begin, rad
   double m_before = 0;
-  double m_jumped = 0;             ///< by all jumps so far, rad
+  double m_jumped = 0;  ///< by all jumps so far, rad
   std::size_t m_blocks = 0;
   double m_first = 0;              ///< median of the first block, rad
   double m_left = 0, m_right = 0;  ///< farthest of the blocks from the first, rad

@@ -134,7 +134,8 @@ void readMotions(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor
 
 ScanFolder readScanFolder(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor) {
   if (!fs::is_directory(folder / "velodyne"))
-    throw Error(folder.string() + ": no folder velodyne in it, for *.bin; *.pcd are read by "
+    throw Error(folder.string() +
+                ": no folder velodyne in it, for *.bin; *.pcd are read by "
                 "`pole-import pcd`");
   const Scans scans = listScans(folder / "velodyne", ".bin", " in velodyne/");
   ScanFolder result;

@@ -72,9 +72,9 @@ struct POLEMCL_EXPORT SensorOptions {
   double upperApex = 0, lowerApex = 0;
   int rings = 64;                                     ///< number, only for `uniform`
   double fovUp = 2.0 * 3.14159265358979323846 / 180;  ///< rad, only for `uniform` (`fov_up_deg`)
-  double fovDown = static_cast<double>(
-      -24.83L * 3.14159265358979323846L / 180);  ///< rad, only for `uniform` (`fov_down_deg`)
-  int columns = 0;                               ///< firing steps of a turn; 0: those of the model
+  double fovDown = static_cast<double>(-24.83L * 3.14159265358979323846L /
+                                       180);  ///< rad, only for `uniform` (`fov_down_deg`)
+  int columns = 0;                            ///< firing steps of a turn; 0: those of the model
   double height = 1.73;                       ///< optical centre above ground, m (`height_m`)
   /// Optical centre in the *robot frame after the sensor pose*, when clouds come in another frame
   /// than the LiDAR's own (NCLT: body frame, 0.957 m above its origin): `origin = x y z`, m.
