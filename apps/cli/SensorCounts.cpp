@@ -38,6 +38,11 @@ std::vector<std::string> turnDoubts(const SequenceCounts& counts, const ScanTimi
                      " deg apart; set [sensor] turn = " + name(turn.turn) +
                      ", moving_cut = true to correct them for the motion during a turn, or turn = "
                      "compensated if they are corrected");
+  if (counts.unorderedScans > 0)
+    doubts.push_back(std::to_string(counts.unorderedScans) + " of its " +
+                     std::to_string(counts.scans) +
+                     " scans are not used: their points are not in the order of measuring, so "
+                     "moving_cut = true finds no begin of the scan");
   const bool isSet = timing.turn != Turn::automatic && counts.lidars.empty();
   if (isSet && counts.storedScans > 0 && counts.poles > 0 && timing.known() != counts.storedTurn)
     doubts.push_back(

@@ -351,8 +351,9 @@ void searchDrive(const InspectOptions& options, Inspection& result, const ScanPr
 /// What the configuration that ships for this model sets beside [sensor], as text of an INI file.
 std::string chosenFor(const PresetFit* fit) {
   for (const auto& shipped : kShipped) {
-    if (!fit || fit->model != shipped.model) continue;
-    const std::string text = io::readBytes(io::installedFile(shipped.file, "config"));
+    const std::filesystem::path file = io::fileOfDataFolder(shipped.file, "config");
+    if (!fit || fit->model != shipped.model || file.empty()) continue;
+    const std::string text = io::readBytes(file);
     const std::size_t others = text.find("\n[", text.find("[sensor]"));
     if (others != std::string::npos)
       return std::string("\n# As config/") + shipped.file + text.substr(others);

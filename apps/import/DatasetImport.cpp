@@ -11,6 +11,7 @@
 #include "config/TimingComment.h"
 #include "core/common/Angles.h"
 #include "core/common/DetectionCheck.h"
+#include "core/common/Statistics.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/KittiOdometry.h"
 #include "io/dataset/KittiRaw.h"
@@ -168,6 +169,17 @@ void checkTimes(const ImportOptions& options, const io::ScanFolder& folder) {
                   "nanoseconds)");
 }
 
+/// Times in other units pass for seconds; no LiDAR is so slow.
+std::optional<std::string> slowNote(const io::ScanFolder& folder) {
+  constexpr double kSlow = 5;  // s
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < folder.scans.size(); ++i)
+    steps.push_back(folder.scans[i].time - folder.scans[i - 1].time);
+  const auto middle = quantile(steps, 0.5);
+  if (!middle || *middle < kSlow) return std::nullopt;
+  return "scans are " + io::significant(*middle, 4) + " s apart (median): times must be in seconds";
+}
+
 void checkSelection(const ImportOptions& options, const io::ScanFolder& folder) {
   const std::string where = options.input.string() + ": ";
   if (const std::size_t last = folder.scans.back().number; options.offset > last)
@@ -279,6 +291,7 @@ ImportReport importDataset(const ImportOptions& options,
 
   ImportReport report;
   report.notes = folder.notes;
+  if (const auto note = slowNote(folder)) report.notes.push_back(*note);
   report.embedded = options.embed || folder.read;
   std::optional<io::AtomicFile> truthFile;
   if (folder.scans.front().T_map_robot) truthFile.emplace(truthBeside(options.output));

@@ -229,8 +229,9 @@ void warnIfLost(const LocalizeResult& result, const LocalizeJob& job, const std:
   if (ok > 0 || 2 * lost < scans) return;
   std::cerr << warningLine("pole-localize", "no pose was ok, most were lost: is " +
                                                 job.map.string() +
-                                                " a map of another place, the start wrong, or the "
-                                                "configuration that of another LiDAR?" +
+                                                " a map of another place, the start wrong, the "
+                                                "configuration that of another LiDAR, the odometry "
+                                                "in another frame, or [sensor] turn wrong?" +
                                                 doubts)
             << '\n';
 }

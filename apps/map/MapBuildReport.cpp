@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kManyTwins = 0.25;  ///< share of the poles
 constexpr double kManyUntold = 0.1;  ///< share of the motions
+constexpr double kLongUntold = 0.5;  ///< s: beyond, poles before and after need not find together
 
 /// Motions of the odometry that the poles contradict; empty when there are none.
 std::string odometryDoubt(const FilledMotions& filled) {
@@ -27,14 +28,16 @@ std::string odometryDoubt(const FilledMotions& filled) {
                            "anew");
 }
 
-/// Motions that nothing tells; empty when these are few.
+/// Motions that nothing tells; empty when these are few and short.
 std::string coastingDoubt(const FilledMotions& filled) {
-  if (static_cast<double>(filled.coasted) <= kManyUntold * static_cast<double>(filled.motions))
-    return {};
+  const bool isMany =
+      static_cast<double>(filled.coasted) > kManyUntold * static_cast<double>(filled.motions);
+  if (!isMany && filled.longestCoast < kLongUntold) return {};
   return "neither odometry nor poles tell " + std::to_string(filled.coasted) + " of its " +
-         std::to_string(filled.motions) +
-         " motions: the path is a guess there; check whether its scans are all of one drive, in "
-         "their order, and have the right times";
+         std::to_string(filled.motions) + " motions, up to " + io::fixed(filled.longestCoast, 1) +
+         " s on end, the first before " + io::fixed(filled.firstCoasted, 3) +
+         " s: the path is a guess there, and the map may be torn; check whether its scans are all "
+         "of one drive, in their order, and have the right times, or give odometry";
 }
 
 /// Positions from satellites of which many do not fit the path; empty otherwise.

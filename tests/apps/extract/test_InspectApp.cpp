@@ -49,6 +49,13 @@ void writeSimulated(const fs::path& folder, const std::string& lidar, double hei
   writeText(folder / "poses.txt", poses);
 }
 
+Points pointsOf(const fs::path& scan) {
+  const std::string bytes = readText(scan);
+  Points points(bytes.size() / sizeof points[0]);
+  std::memcpy(points.data(), bytes.data(), bytes.size());
+  return points;
+}
+
 /// The turns of a simulated VLP-16 in `folder/sim`, 8 m/s, clockwise, cut anew every `span` s,
 /// which is more than one: `folder/in`, with its points in the order of measuring.
 void cutAnew(const fs::path& folder, std::size_t turns, double span) {
@@ -58,10 +65,7 @@ void cutAnew(const fs::path& folder, std::size_t turns, double span) {
   };
   std::vector<Measured> all;
   for (std::size_t i = 0; i < turns; ++i) {
-    const std::string bytes = readText(folder / "sim" / "velodyne" / scanName(i));
-    std::vector<std::array<float, 4>> points(bytes.size() / sizeof(std::array<float, 4>));
-    std::memcpy(points.data(), bytes.data(), bytes.size());
-    for (const auto& point : points) {
+    for (const auto& point : pointsOf(folder / "sim" / "velodyne" / scanName(i))) {
       const double turned = (M_PI - std::atan2(point[1], point[0])) / (2 * M_PI);
       all.push_back({0.1 * (static_cast<double>(i) + turned - 0.5), point});
     }
@@ -243,6 +247,42 @@ TEST_F(InspectApp, FindsACutThatMovesAndRangesThatAreOff) {
   const SensorOptions written = loadSettings((folder / "found.ini").string()).sensor;
   EXPECT_NEAR(written.rangeOffset, found.ranges->offset, 0.0005);
   EXPECT_NEAR(written.rangeScale, found.ranges->scale, 0.00005);
+}
+
+TEST_F(InspectApp, ALidarOnItsHeadTurnsTheOtherWayInItsOwnFrame) {
+  importCutAnew("60");
+  for (const auto& scan : fs::directory_iterator(folder / "in" / "velodyne")) {
+    Points points = pointsOf(scan.path());
+    for (auto& point : points) {
+      point[1] = -point[1];
+      point[2] = -point[2];
+    }
+    writeBin(scan.path(), points);
+  }
+  import("in", false, "0 0 0 0 0 180");
+  succeeded(inspectInput(
+      {"--truth", at("sim.tum"), "--turn-s", "0.1", "--write-config", at("found.ini")}));
+  const ScanTiming found = loadSettings(at("found.ini")).sensor.timing;
+  EXPECT_TRUE(found.movingCut && found.turn == Turn::counterclockwise);
+}
+
+TEST_F(InspectApp, AScanWhosePointsAreMixedIsLeftOut) {
+  importCutAnew("40");
+  const auto mix = [&](std::size_t number) {
+    const fs::path scan = folder / "in" / "velodyne" / scanName(number);
+    Points points = pointsOf(scan);
+    std::sort(points.begin(), points.end());
+    writeBin(scan, points);
+  };
+  const auto extract = [&] {
+    return run({"--quiet", "--config", "vlp16.ini", "--input", at("in.rawlog"), "--output",
+                at("p.rawlog"), "--set", "sensor.turn=clockwise", "--set",
+                "sensor.moving_cut=true"});
+  };
+  mix(7);
+  EXPECT_HAS(succeeded(extract()).err, "scans are not used: their points are not in the order");
+  mix(1);
+  expectFailure(extract(), {"scan 1: ", "not in the order of measuring"});
 }
 
 // A warning of each program that takes poles from scans, with --quiet too.

@@ -358,6 +358,18 @@ TEST_F(DatasetImport, RefusesTimesThatAreNotInSeconds) {
   }
 }
 
+TEST_F(DatasetImport, NotesTimesThatPassForSecondsButAreFarApart) {
+  writeLine(options.input, 3);
+  const auto notes = [&](const char* times) {
+    std::ofstream(options.input / "times.txt") << times;
+    return importDataset(options).notes;
+  };
+  const std::vector<std::string> milliseconds = notes("0\n100\n200\n");
+  ASSERT_EQ(milliseconds.size(), 1u);
+  EXPECT_HAS(milliseconds[0], "scans are 100 s apart (median): times must be in seconds");
+  EXPECT_TRUE(notes("0\n4\n8\n").empty());
+}
+
 TEST_F(DatasetImport, RefusesATruncatedScan) {
   writeLine(options.input, 3);
   writeText(options.input / "velodyne" / scanName(2), "17 bytes are bad!");

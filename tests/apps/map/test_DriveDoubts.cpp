@@ -84,6 +84,7 @@ TEST_F(DriveDoubts, ManyMotionsThatNothingTellsGiveAWarning) {
   import("in");
   const Outcome blind = succeeded(buildWithoutTruth());
   EXPECT_HAS(blind.err, "warning: in.rawlog: neither odometry nor poles tell 5 of its 29 motions");
+  EXPECT_HAS(blind.err, " s on end, the first before 51.000 s: the path is a guess there");
   EXPECT_HAS(blind.out, "5 go on as before: look there, the first at 51.000 s");
   EXPECT_HAS(blind.out, " m against the first, if 5 guessed motions are right\n");
 }

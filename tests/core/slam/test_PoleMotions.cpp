@@ -235,6 +235,45 @@ TEST(PoleMotions, MisleadingPolesSayNothing) {
   }
 }
 
+/// Scans at these places along x: five poles stay in view, eight others are seen before and eight
+/// more behind 9 m.
+std::vector<PoleScan> withGap(const std::vector<std::pair<double, double>>& timesAndPlaces) {
+  const std::vector<Eigen::Vector2d> common{{12, 5}, {19, -7}, {23, 9}, {31, 4}, {34, -11}},
+      before{{-20, 6}, {-14, -9}, {-9, 12}, {-3, -5}, {2, 8}, {5, -13}, {9, 15}, {11, -4}},
+      behind{{48, -6}, {51, 10}, {55, -14}, {57, 3}, {61, 8}, {66, -9}, {70, 13}, {40, 6}};
+  std::vector<PoleScan> scans;
+  for (const auto& [time, place] : timesAndPlaces) {
+    PoleScan scan;
+    scan.time = time;
+    for (const auto* poles : {&common, place < 9 ? &before : &behind})
+      for (const Eigen::Vector2d& pole : *poles) {
+        PoleDetection seen;
+        seen.x = pole.x() - place;
+        seen.y = pole.y();
+        seen.covariance = 4e-4 * Eigen::Matrix2d::Identity();
+        scan.poles_robot.push_back(seen);
+      }
+    scans.push_back(scan);
+  }
+  return scans;
+}
+
+TEST(PoleMotions, AChangeOfSpeedInAGapIsToldByThePolesInCommon) {
+  std::vector<std::pair<double, double>> drive;
+  for (int i = 0; i < 6; ++i) drive.emplace_back(0.1 * i, 0.75 * i);
+  drive.emplace_back(1.6, 0.75 * 5 + 9.3);  // after 1.1 s, 8.3 m at the speed before
+  std::vector<PoleScan> scans = withGap(drive);
+  const FilledMotions filled = fillMotions(scans);
+  EXPECT_EQ(filled.coasted, 0u);
+  EXPECT_NEAR(scans.back().motion->mean.x, 9.3, 0.1);
+
+  drive.back().second += 6;  // no vehicle
+  std::vector<PoleScan> jumped = withGap(drive);
+  const FilledMotions guessed = fillMotions(jumped);
+  EXPECT_EQ(guessed.coasted, 1u);
+  EXPECT_NEAR(guessed.longestCoast, 1.1, 1e-9);
+}
+
 TEST_F(PoleMotionsTest, RefusesWhereNothingTellsTheWay) {
   forgetMotions(1, scans.size());
   blind(40, 65);

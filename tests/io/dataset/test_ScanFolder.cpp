@@ -234,6 +234,21 @@ TEST_F(ScanFolderTest, FoldersOfPcdFiles) {
   write("7.pcd", "#");
   EXPECT_HAS(readPcdFolder(m_folder, kIdentity).notes[0], "first between 2.pcd and 7.pcd");
   fs::remove(path("7.pcd"));
+  fs::create_directory(path("stamped"));
+  const auto timesOf = [&](const std::string& first, const std::string& second) {
+    for (const auto& entry : fs::directory_iterator(path("stamped"))) fs::remove(entry.path());
+    write("stamped/" + first + ".pcd", "#");
+    write("stamped/" + second + ".pcd", "#");
+    const ScanFolder named = readPcdFolder(path("stamped"), kIdentity);
+    return std::pair(named.scans[0].time, named.scans[1].time);
+  };
+  const std::pair right(1700000000.0, 1700000001.5);
+  EXPECT_EQ(timesOf("1700000000.000000000", "1700000001.500000000"), right);
+  EXPECT_EQ(timesOf("1700000000000", "1700000001500"), right);
+  EXPECT_EQ(timesOf("1700000000000000", "1700000001500000"), right);
+  EXPECT_EQ(timesOf("1700000000000000000", "1700000001500000000"), right);
+  EXPECT_EQ(timesOf("0000000012", "0000000013"), std::pair(0.0, 0.1)) << "numbers";
+  EXPECT_EQ(timesOf("1700000000", "a"), std::pair(0.0, 0.1));
   write("times.txt", "5\n6\n7.5\n");
   write("poses.txt", leftAt("10", "20", "3") + leftAt("11", "20", "3") + leftAt("12", "20", "3"));
   write("odometry.txt", "1 0 0 1 1 1\n1 0 0 1 1 1\n");

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <polemcl/io/rosbag/PackedCloud.h>
 #include "io/rosbag/RosMessages.h"
 #include "support/IoFiles.h"
@@ -98,7 +100,7 @@ TEST(PointTimes, SaysWhyNothingIsFound) {
     scan.offsets[i] = 0.1 * static_cast<double>(i * 7919 % 1800) / 1800;
   expectNone({good, scan}, "do not follow their azimuths");
   expectNone({good, mixed(turn(1, 1, 0))},
-             "begin at different azimuths, and their points are not in the order");
+             "begin at different azimuths or have more than a turn, and their points are not in");
   expectNone({good, turn(-1, 0, 0)}, "turn in different ways");
   expectNone({turn(1, 0, 0, 100)}, "turns of 100 s; uint32 in ns, float32 and float64 in s");
   expectNone({turn(1, 0, 0, 0.0001)}, "turns of 0.0001 s");
@@ -119,6 +121,39 @@ TEST(PointTimes, ScansThatBeginAtAMovingAzimuth) {
   EXPECT_NEAR(timing.seconds, 0.1, 1e-5);
   EXPECT_NEAR(timing.stamp, 0, 0.001);
   expectIn(estimate.note(), "clockwise, each from its first point on, stamped at 0 of the turn");
+}
+
+/// A turn, and more of the next one.
+RosCloud longScan(double begin) {
+  RosCloud scan = turn(-1, 2, begin);
+  const RosCloud next = turn(-1, 2, begin + 0.1);
+  const std::size_t more = next.cloud.size() / 8;
+  const auto add = [&](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(more));
+  };
+  add(scan.cloud.x, next.cloud.x);
+  add(scan.cloud.y, next.cloud.y);
+  add(scan.cloud.z, next.cloud.z);
+  add(scan.cloud.intensity, next.cloud.intensity);
+  add(scan.offsets, next.offsets);
+  return scan;
+}
+
+TEST(PointTimes, ScansOfMoreThanATurn) {
+  for (const double stamp : {0.0, 0.5, 1.0}) {
+    const TimingEstimate estimate =
+        estimateOf({longScan(-0.1125 * stamp), longScan(-0.1125 * stamp)});
+    const ScanTiming timing = estimate.timing();
+    EXPECT_EQ(timing.turn, Turn::clockwise) << estimate.note();
+    EXPECT_NEAR(timing.seconds, 0.1, 1e-5);
+    EXPECT_TRUE(timing.movingCut);
+    EXPECT_NEAR(timing.stamp, stamp, 0.005) << "of the scan";
+  }
+  RosCloud backwards = longScan(0);
+  for (auto* values : {&backwards.cloud.x, &backwards.cloud.y})
+    std::reverse(values->begin(), values->end());
+  std::reverse(backwards.offsets.begin(), backwards.offsets.end());
+  EXPECT_FALSE(estimateOf({backwards}).timing().known()) << "its first point was measured last";
 }
 
 // Points that are not in the order of measuring, and a cut that moves slowly.

@@ -37,6 +37,10 @@ constexpr int kFewMotions = 10;
 /// path is a guess.
 constexpr double kMostUntold = 0.25;
 
+/// Least share of the poles, if kSurePairs tell a change of speed that a vehicle makes: beyond a
+/// gap others are seen.
+constexpr double kShareBeyondGap = 0.25;
+
 /// Poles as seen at the time of their scan.
 std::vector<PoleDetection> stillPoles(const PoleScan& scan, const Velocity& velocity) {
   std::vector<PoleDetection> poles = scan.poles_robot;
@@ -225,6 +229,7 @@ class MotionFiller {
       return true;
     }
     m_coasted += seconds;
+    m_filled.longestCoast = std::max(m_filled.longestCoast, m_coasted);
     if (m_coasted > kLongestCoast) refuse(i);
     move(i, {guess, covarianceOf(guess, m_coasted)});
     return false;
@@ -252,12 +257,18 @@ class MotionFiller {
   std::optional<ScanRegistration> align(const std::vector<PoleDetection>& before,
                                         const std::vector<PoleDetection>& now, const Pose2D& guess,
                                         double seconds) const {
-    if (m_velocity) {
-      const ScanRegistration near = refineMotion(before, now, guess, {});
-      if (isEnough(near, before, now, kMinPairsNear)) return near;
-    }
+    ScanRegistration near;
+    if (m_velocity) near = refineMotion(before, now, guess, {});
+    if (isEnough(near, before, now, kMinPairsNear)) return near;
     const ScanRegistration found = searchMotion(before, now, guess, searchLimits(seconds));
-    return isEnough(found, before, now, kMinPairs) ? std::optional(found) : std::nullopt;
+    const Pose2D off = relative(guess, found.motion);
+    const bool isPossible =
+        m_velocity && std::hypot(off.x, off.y) <= kSlip + kAcceleration * seconds * seconds;
+    if (isEnough(found, before, now, kMinPairs) ||
+        (isPossible && found.score > kClearly * near.score &&
+         isEnough(found, before, now, kSurePairs, kShareBeyondGap)))
+      return found;
+    return std::nullopt;
   }
 
   static bool isEnough(const ScanRegistration& found, const std::vector<PoleDetection>& before,

@@ -15,6 +15,7 @@ struct FilledMotions {
   std::size_t byPoles = 0;       ///< missing motions by the poles
   std::size_t coasted = 0;       ///< missing ones that go on as before, where too few poles told
   double firstCoasted = 0;       ///< time of the scan that the first of these leads to, s
+  double longestCoast = 0;       ///< time over which such motions follow one another, at most, s
   std::size_t contradicted = 0;  ///< motions of the odometry that were told anew
   double firstContradicted = 0;  ///< time of the scan that the first of these leads to, s
   bool all = false;              ///< no motion is that of an odometry
@@ -25,7 +26,8 @@ struct FilledMotions {
 ///
 /// The motion before goes on (constant velocity), and is corrected by the poles that the scan has
 /// in common with the one before, or with one up to a second back. At the begin, and where poles
-/// contradict it, all motions up to 40 m/s are searched. The covariance is that of a coarse
+/// contradict it, all motions up to 40 m/s are searched. Over a gap fewer poles are in common: five
+/// suffice for a change of speed that a vehicle makes. The covariance is that of a coarse
 /// odometry, 5 cm + 5 % and 0.6°, more where nothing corrects it: the poles themselves are used
 /// again by mapDrives().
 ///

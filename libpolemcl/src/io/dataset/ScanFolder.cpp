@@ -31,6 +31,31 @@ Scans listScans(const fs::path& folder, const std::string& ending, const std::st
   return scans;
 }
 
+/// The time that a name is, s: seconds since 1970 with a fraction, or whole ms, us or ns.
+std::optional<double> timeOfName(const std::string& name) {
+  constexpr double kEarliest = 1e8, kLatest = 1e10;
+  if (name.find_first_not_of("0123456789.") != std::string::npos) return std::nullopt;
+  const auto number = parseNumber(name);
+  if (!number) return std::nullopt;
+  double time = *number;
+  if (name.find('.') == std::string::npos)
+    time *= name.size() == 13 ? 1e-3 : name.size() == 16 ? 1e-6 : name.size() == 19 ? 1e-9 : 0;
+  return time > kEarliest && time < kLatest ? std::optional(time) : std::nullopt;
+}
+
+/// Takes the names of the scans as their times, if all are times, and later ones later.
+bool takeTimesOfNames(const Scans& scans, ScanFolder& folder) {
+  std::vector<double> times;
+  for (const fs::path& file : scans.files) {
+    const auto time = timeOfName(file.stem().string());
+    if (!time || (!times.empty() && *time <= times.back())) return false;
+    times.push_back(*time);
+  }
+  for (std::size_t i = 0; i < times.size(); ++i) folder.scans[i].time = times[i];
+  folder.notes.push_back("no times.txt: the names of the files are their times");
+  return true;
+}
+
 /// What the numbers of the scans say against equal times; empty if they are in turn.
 std::string gapOfNumbers(const Scans& scans) {
   for (std::size_t i = 1; i < scans.files.size(); ++i) {
@@ -154,7 +179,7 @@ ScanFolder readPcdFolder(const fs::path& folder, const Eigen::Isometry3d& T_robo
   addScans(scans, result);
   if (isThere(folder / "times.txt")) {
     readTimes(folder / "times.txt", scans, result);
-  } else {
+  } else if (!takeTimesOfNames(scans, result)) {
     for (std::size_t i = 0; i < result.scans.size(); ++i)
       result.scans[i].time = kNominalPeriod * static_cast<double>(i);
     result.nominalTimes = true;

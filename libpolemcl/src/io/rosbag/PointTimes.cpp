@@ -21,7 +21,8 @@ constexpr double kOnLine =
 constexpr double kLeastOnLine = 0.9;  ///< share of the points
 constexpr double kMostSpread = 15 * degree;  ///< of the azimuth at the stamp, from scan to scan
 constexpr double kRoundedStamp =
-    0.005;  ///< turns; a stamp so near to begin or end of the turn is there
+    0.005;                          ///< turns; a stamp so near to begin or end of the turn is there
+constexpr double kMostTurns = 1.2;  ///< in one scan
 constexpr double kShortestTurn = 0.02, kLongestTurn = 1;  ///< s
 
 /// Points of a scan.
@@ -60,7 +61,7 @@ std::complex<double> meanDirection(const TimedPoints& samples, double rate) {
 /// The rate that the points follow best, among those of a turn that takes about `span` s.
 double coarseRate(const TimedPoints& samples, double span) {
   double best = 0, bestLength = -1;
-  for (int percent = 70; percent <= 110; percent += 2) {
+  for (int percent = 70; percent <= 124; percent += 2) {
     for (const int sign : {-1, 1}) {
       const double rate = sign * 2 * M_PI * percent / (100 * span);
       const double length = std::abs(meanDirection(samples, rate));
@@ -107,7 +108,14 @@ double medianOf(const std::vector<double>& values) {
 struct Fit {
   double rate = 0;     ///< rad/s, above 0: counter-clockwise
   double atStamp = 0;  ///< azimuth at the time stamp, rad
-  double middle = 0;   ///< from the stamp to the middle of the turn, s
+  double middle = 0;   ///< from the stamp to the middle of the scan, s
+  double turns = 0;    ///< in the scan
+
+  /// The moment of the stamp, as a share of the scan if it has more than a turn, else of the turn.
+  double stamp() const { return 0.5 - middle * std::abs(rate) / (2 * M_PI * sweep()); }
+  /// Turns that this share is of.
+  double sweep() const { return hasMoreThanATurn() ? turns : 1; }
+  bool hasMoreThanATurn() const { return 2 * M_PI * turns > kMoreThanATurn; }
 };
 
 /// The azimuth of each point is fitted as a line over its time, in both directions; the better one
@@ -126,9 +134,9 @@ std::optional<Fit> fitOf(const TimedCloud& scan) {
                                   [](double error) { return std::abs(error) < kOnLine; });
   const double turns = (end - begin) * std::abs(rate) / (2 * M_PI);
   if (static_cast<double>(near) < kLeastOnLine * static_cast<double>(errors.size()) ||
-      turns < 0.7 || turns > 1.1)
+      turns < 0.7 || turns > kMostTurns)
     return std::nullopt;
-  return Fit{rate, atMiddle - rate * middle, middle};
+  return Fit{rate, atMiddle - rate * middle, middle, turns};
 }
 
 bool beginElsewhere(const Fit& a, const Fit& b) {
@@ -147,7 +155,7 @@ struct TimingEstimate::Impl {
   std::size_t scans = 0;    ///< of which these are
   std::size_t untimed = 0;  ///< points without times, or all with the same one
   std::size_t partial = 0;  ///< not a full turn
-  bool cutMoves = false;    ///< some scan begins elsewhere than the first one
+  bool cutMoves = false;    ///< some scan begins elsewhere than the first one, or ends elsewhere
   bool inOrder = true;      ///< the points of all fits are in the order of measuring
 };
 
@@ -161,8 +169,11 @@ void TimingEstimate::Impl::add(const TimedCloud& scan) {
     if (!isLater) ++partial;
   } else if (const auto found = fitOf(scan)) {
     if (!isLater) fits.push_back(*found);
-    cutMoves = cutMoves || (!fits.empty() && beginElsewhere(*found, fits.front()));
-    inOrder = inOrder && pointOrder(scan.cloud.view());
+    cutMoves = cutMoves || found->hasMoreThanATurn() ||
+               (!fits.empty() && beginElsewhere(*found, fits.front()));
+    const auto order = pointOrder(scan.cloud.view());
+    const Turn turn = found->rate > 0 ? Turn::counterclockwise : Turn::clockwise;
+    inOrder = inOrder && order && order->turn == turn;
   }
 }
 
@@ -183,34 +194,34 @@ std::string TimingEstimate::Impl::problem() const {
              " s; uint32 in ns, float32 and float64 in s are expected";
     if (fit.rate * reference.rate < 0 || std::abs(fit.rate / reference.rate - 1) > 0.05)
       return "the scans turn in different ways";
-    const double stamp = 0.5 - fit.middle * std::abs(fit.rate) / (2 * M_PI);
-    if (stamp < -0.5 || stamp > 1.5)
+    if (fit.stamp() < -0.5 || fit.stamp() > 1.5)
       return "the times of the points are far from the stamps of the scans";
   }
   if (cutMoves && !inOrder)
-    return "the scans begin at different azimuths, and their points are not in the order of "
-           "measuring";
+    return "the scans begin at different azimuths or have more than a turn, and their points are "
+           "not in the order of measuring";
   return {};
 }
 
 ScanTiming TimingEstimate::Impl::timing() const {
   if (!problem().empty()) return {};
-  std::vector<double> rates, middles, azimuths;
+  std::vector<double> rates, stamps, sweeps, azimuths;
   for (const Fit& fit : fits) {
     rates.push_back(fit.rate);
-    middles.push_back(fit.middle);
+    stamps.push_back(fit.stamp());
+    sweeps.push_back(fit.sweep());
     azimuths.push_back(wrapAngle(fit.atStamp - fits.front().atStamp));
   }
   const double rate = medianOf(rates);
   ScanTiming timing;
   timing.turn = rate > 0 ? Turn::counterclockwise : Turn::clockwise;
   timing.seconds = 2 * M_PI / std::abs(rate);
-  const double stamp = 0.5 - medianOf(middles) / timing.seconds;
+  const double stamp = medianOf(stamps);
   const double nearest = std::round(stamp) + 0.0;  // not -0
   timing.stamp = std::clamp(std::abs(stamp - nearest) < kRoundedStamp ? nearest : stamp, 0.0, 1.0);
   // A stamp outside the turn is one of another clock.
   if (std::abs(timing.stamp - stamp) > kRoundedStamp)
-    timing.clock = (timing.stamp - stamp) * timing.seconds;
+    timing.clock = (timing.stamp - stamp) * medianOf(sweeps) * timing.seconds;
   const double atStamp = fits.front().atStamp + medianOf(azimuths);
   timing.cut = wrapAngle(atStamp + rate * (timing.clock - timing.stamp * timing.seconds));
   timing.movingCut = cutMoves;

@@ -166,10 +166,7 @@ ScanTiming ObservationPoleExtractor::Impl::timingOf(PointsView& cloud) const {
     timing.cut = turn.begin;
     return timing;
   }
-  if (cloud.size >= SensorConfigCheck::kFewestPoints)
-    throw Error(
-        "the points of the cloud are not in the order of measuring, so moving_cut = true finds no "
-        "begin of the scan; cut_deg names a fixed one");
+  if (cloud.size >= SensorConfigCheck::kFewestPoints) throw UnorderedScan();
   timing.turn = Turn::compensated;  // nothing to correct
   return timing;
 }
@@ -202,6 +199,12 @@ void ObservationPoleExtractor::Impl::compare(const mrpt::obs::CObservation& obse
   if (!contradiction.empty()) throw Error(contradiction);
   --checksLeft;
 }
+
+ObservationPoleExtractor::UnorderedScan::UnorderedScan()
+    : Error(
+          "the points of the cloud are not in the order of measuring, so moving_cut = true finds "
+          "no "
+          "begin of the scan; cut_deg names a fixed one") {}
 
 ObservationPoleExtractor::ObservationPoleExtractor(const ObservationPoleExtractorOptions& options)
     : m_impl(std::make_unique<Impl>(options)) {}

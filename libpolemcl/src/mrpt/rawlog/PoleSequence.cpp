@@ -23,6 +23,17 @@ double secondsSince(ScanClock::time_point begin) {
   return std::chrono::duration<double>(ScanClock::now() - begin).count();
 }
 
+/// Scans of each LiDAR that are compared with the settings; these must be in order, too.
+constexpr std::size_t kChecked = 3;
+
+CObservationPoles::Ptr noPolesOf(const mrpt::obs::CObservation& scan) {
+  auto none = std::make_shared<CObservationPoles>();
+  none->timestamp = scan.timestamp;
+  none->sensorLabel = scan.sensorLabel;
+  scan.getSensorPose(none->sensorPose);
+  return none;
+}
+
 /// One scan in the pipeline. An error travels in the scan's position: the first error of the file
 /// is thus the one reported, for any timing of the threads.
 struct Task {
@@ -32,6 +43,7 @@ struct Task {
   std::vector<FusionAgreement> agreements;  ///< of the parts, if LiDARs are fused
   /// Order of the points by sensor label, for UntoldTurnSearch.
   std::map<std::string, std::optional<PointOrder>> orders;
+  bool isUnordered = false;  ///< no poles: ObservationPoleExtractor::UnorderedScan
   std::exception_ptr error;
 };
 using TaskPtr = std::shared_ptr<Task>;
@@ -63,7 +75,7 @@ class Stream {
   static Extractors extractorsFor(const SequenceOptions& options);
   CObservationPoles::Ptr polesOf(const LidarScan& part, Task& task);
   void fuse(Task& task, const std::vector<CObservationPoles::Ptr>& parts) const;
-  void count(const ReadScan& scan);
+  void count(const ReadScan& scan, bool isUnordered);
   void countLidars(const Task& task);
   /// What the settings say of a LiDAR.
   const ScanTiming& timingOf(const std::string& label) const;
@@ -124,8 +136,15 @@ CObservationPoles::Ptr Stream::polesOf(const LidarScan& part, Task& task) {
   ObservationPoleExtractor& extraction = m_extractions.local()[part.lidar];
   // By number, so that the result does not depend on the threads.
   extraction.setRecordedTiming(task.timing);
-  extraction.checkNext(part.ordinal < 3);
-  auto poles = extraction.process(*part.observation);
+  extraction.checkNext(part.ordinal < kChecked);
+  CObservationPoles::Ptr poles;
+  try {
+    poles = extraction.process(*part.observation);
+  } catch (const ObservationPoleExtractor::UnorderedScan&) {
+    if (part.ordinal < kChecked) throw;
+    poles = noPolesOf(*part.observation);
+    task.isUnordered = true;
+  }
   task.result.sources.push_back(part.observation);
   task.result.report += extraction.report();
   if (UntoldTurnSearch::wants(part.ordinal))
@@ -178,7 +197,7 @@ void Stream::collect(Task& task, const std::function<void(const ReadScan&)>& con
   try {
     if (task.error) std::rethrow_exception(task.error);
     consume(task.result);
-    count(task.result);
+    count(task.result, task.isUnordered);
     if (task.scan.isFused) countLidars(task);
     for (const auto& [label, order] : task.orders) m_turns[label].add(order);
   } catch (...) {
@@ -188,14 +207,16 @@ void Stream::collect(Task& task, const std::function<void(const ReadScan&)>& con
   }
 }
 
-void Stream::count(const ReadScan& scan) {
+void Stream::count(const ReadScan& scan, bool isUnordered) {
   ++m_counts.scans;
   m_counts.storedScans += scan.stored ? 1 : 0;
   const std::vector<PoleDetection>& poles = scan.observation->poles;
   m_counts.storedTurn |= scan.stored && std::any_of(poles.begin(), poles.end(), [&](const auto& p) {
                            return p.timeOffset != poles.front().timeOffset;
                          });
-  m_counts.emptyScans += scan.points == 0 && scan.observation->poles.empty() ? 1 : 0;
+  m_counts.unorderedScans += isUnordered ? 1 : 0;
+  const bool isEmpty = scan.points == 0 && scan.observation->poles.empty();
+  m_counts.emptyScans += isEmpty && !isUnordered ? 1 : 0;
   m_counts.points += scan.points;
   m_counts.invalidPoints += scan.invalid;
   m_counts.poles += poles.size();

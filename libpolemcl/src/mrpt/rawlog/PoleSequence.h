@@ -59,12 +59,13 @@ struct LidarCounts {
 
 /// \brief Statistics of the rawlog.
 struct SequenceCounts {
-  std::size_t scans = 0;          ///< scans returned, including empty ones
-  std::size_t storedScans = 0;    ///< scans that were stored as poles in the rawlog
-  bool storedTurn = false;        ///< their poles say when in a turn they were measured
-  std::size_t emptyScans = 0;     ///< scans without valid points and poles
-  std::size_t points = 0;         ///< valid points of all scans
-  std::size_t invalidPoints = 0;  ///< points dropped: NaN, infinite or at the origin
+  std::size_t scans = 0;           ///< scans returned, including empty ones
+  std::size_t storedScans = 0;     ///< scans that were stored as poles in the rawlog
+  bool storedTurn = false;         ///< their poles say when in a turn they were measured
+  std::size_t emptyScans = 0;      ///< scans without valid points and poles
+  std::size_t unorderedScans = 0;  ///< without poles: ObservationPoleExtractor::UnorderedScan
+  std::size_t points = 0;          ///< valid points of all scans
+  std::size_t invalidPoints = 0;   ///< points dropped: NaN, infinite or at the origin
   std::size_t poles = 0;
   std::size_t otherSensors = 0;              ///< ignored scans of other sensors
   std::set<std::string> otherLabels = {};    ///< class and sensor label of those

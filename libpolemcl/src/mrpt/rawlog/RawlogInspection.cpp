@@ -48,10 +48,12 @@ void requireBeams(const mrpt::obs::CObservation& scan) {
         "inspected; write [sensor] by hand: model, or elevations_deg in the order of the rings");
 }
 
-std::vector<PointOrder> ordersOf(const std::vector<PointsView>& scans) {
+std::vector<PointOrder> ordersOf(const std::vector<ScanSource::Scan>& scans) {
   std::vector<PointOrder> orders;
-  for (const PointsView& scan : scans) {
-    const auto order = pointOrder(scan);
+  ObservationPoints points{SensorOptions()};
+  for (const ScanSource::Scan& scan : scans) {
+    const ObservationPoints::Loan loan(points);
+    const auto order = pointOrder(points.read(*scan.parts.front().observation));
     if (!order) return {};
     if (order->isWhole()) orders.push_back(*order);
   }
@@ -120,7 +122,7 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
   }
   views.reserve(clouds.size());
   for (const io::Cloud& cloud : clouds) views.push_back(cloud.view());
-  result.orders = ordersOf(views);
+  result.orders = ordersOf(scans);
   for (PointsView& view : views)
     if (const auto order = pointOrder(view)) view = oneTurn(view, *order, 0).points;
   const auto& first = *scans.front().parts.front().observation;

@@ -50,6 +50,12 @@ struct POLEMCL_EXPORT ObservationPoleExtractorOptions {
 ///   rings must equal the number of the sensor's beams.
 class POLEMCL_EXPORT ObservationPoleExtractor {
  public:
+  /// \brief The points of a scan are not in the order of measuring, which `moving_cut` needs.
+  class POLEMCL_EXPORT UnorderedScan : public Error {
+   public:
+    UnorderedScan();
+  };
+
   /// \throws Error when an option is out of range.
   explicit ObservationPoleExtractor(const ObservationPoleExtractorOptions& options);
   ~ObservationPoleExtractor();
@@ -66,7 +72,7 @@ class POLEMCL_EXPORT ObservationPoleExtractor {
   /// (SensorConfigCheck), unless `SensorOptions::checkBeams` is off. Depth images are not compared.
   /// \throws Error for other classes, unreadable external files, a rotating scan with unknown
   ///         elevations, a depth image without usable intrinsics. Also when a compared scan
-  ///         contradicts the configuration.
+  ///         contradicts the configuration. UnorderedScan.
   CObservationPoles::Ptr process(const mrpt::obs::CObservation& observation);
   /// \brief Sets whether the next process() compares its scan, instead of counting to three. For
   /// several objects that share the scans of one rawlog.
