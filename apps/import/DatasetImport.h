@@ -64,7 +64,7 @@ struct ImportReport {
   std::size_t scans = 0;         ///< written
   std::size_t skipped = 0;       ///< left out by `every` and `offset`
   std::size_t emptyScans = 0;    ///< dropped: no valid point; their motion went into the next one's
-  std::size_t damagedScans = 0;  ///< dropped: see ImportOptions::skipDamaged; each has a note
+  std::size_t damagedScans = 0;  ///< of these, by ImportOptions::skipDamaged; each has a note
   std::size_t points = 0;        ///< valid ones, counted when embedded only
   std::size_t invalidPoints = 0;  ///< dropped: NaN, infinite or at the sensor; embedded only
   bool embedded = false;          ///< clouds are inside the rawlog
