@@ -349,11 +349,12 @@ void searchDrive(const InspectOptions& options, Inspection& result, const ScanPr
 }
 
 /// What the configuration that ships for this model sets beside [sensor], as text of an INI file.
-std::string chosenFor(const PresetFit* fit) {
+/// Empty if none ships, or where it is not installed.
+std::string chosenFor(const std::string& model) {
   for (const auto& shipped : kShipped) {
+    if (model != shipped.model) continue;
     const std::filesystem::path file = io::fileOfDataFolder(shipped.file, "config");
-    if (!fit || fit->model != shipped.model || file.empty()) continue;
-    const std::string text = io::readBytes(file);
+    const std::string text = file.empty() ? "" : io::readBytes(file);
     const std::size_t others = text.find("\n[", text.find("[sensor]"));
     if (others != std::string::npos)
       return std::string("\n# As config/") + shipped.file + text.substr(others);
@@ -367,12 +368,13 @@ void saveSensor(const Inspection& inspection, const std::filesystem::path& file)
   AllSettings settings = settingsFor(inspection);
   ConfigWriter writer(Tier::tuning);
   bind(writer, settings.sensor);
+  const PresetFit* preset = inspection.sensor.sensor.preset();
   const auto likely = settings.sensor.timing.known() ? std::nullopt : likelyTurn(inspection);
   io::writeFile(
       file.string(),
       (likely ? "# Unless the scans were corrected for motion: " + settingsOf(*likely) + "\n\n"
               : "") +
-          writer.text() + chosenFor(inspection.sensor.sensor.preset()));
+          writer.text() + (preset ? chosenFor(preset->model) : ""));
 }
 
 }  // namespace
