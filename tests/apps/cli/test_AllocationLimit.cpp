@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
 #include "support/Samples.h"
@@ -64,6 +65,15 @@ TEST_F(AllocationLimit, FalseNumbersOfBeams) {
   mrpt::obs::CObservation2DRangeScan scan;
   scan.resizeScanAndAssign(41, 3.F, true);
   expectRefused(scan, number(41), number(0x7fffffff));
+}
+
+// Their memory is aligned.
+TEST_F(AllocationLimit, FalseNumbersOfMeasurements) {
+  mrpt::obs::CObservationBearingRange bearings;
+  bearings.sensedData.resize(41);
+  for (int i = 0; i < 41; ++i) bearings.sensedData[i].landmarkID = i;
+  for (const std::uint32_t claim : {30'000'000u, 100'000'000u})
+    expectRefused(bearings, number(41), number(claim));
 }
 
 }  // namespace
