@@ -18,9 +18,12 @@ namespace {
 
 void requireAllowed(std::size_t size) {
   PolemclAllocationLimit& limit = *polemclAllocationLimit();
-  if (size <= limit.most) return;
-  limit.reached = true;
-  throw std::bad_alloc();
+  if (size > limit.left) {
+    limit = {};  // the error needs memory, too
+    limit.reached = true;
+    throw std::bad_alloc();
+  }
+  limit.left -= size;
 }
 
 }  // namespace

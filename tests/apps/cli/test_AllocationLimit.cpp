@@ -5,6 +5,7 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CObservationRange.h>
 
 #include "support/Samples.h"
 #include "support/Shell.h"
@@ -20,7 +21,7 @@ std::string number(std::uint32_t value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-/// A rawlog in which one number is another takes neither the memory that it claims nor 4 GB.
+/// A rawlog in which one number is another takes neither the memory that it claims nor 1 GB.
 void expectRefused(const mrpt::obs::CObservation& observation, const std::string& there,
                    const std::string& instead) {
   const TempFolder folder;
@@ -29,7 +30,7 @@ void expectRefused(const mrpt::obs::CObservation& observation, const std::string
   EXPECT_NE(at, std::string::npos);
   bytes.replace(at, there.size(), instead);
   writeText(folder / "forged.rawlog", bytes);
-  const Outcome outcome = shell("ulimit -v 4000000; '" + (bin / "pole-extract").string() +
+  const Outcome outcome = shell("ulimit -v 1000000; '" + (bin / "pole-extract").string() +
                                 "' --inspect '" + (folder / "forged.rawlog").string() + "'");
   EXPECT_EQ(outcome.code, 1) << outcome.out;
   EXPECT_HAS(outcome.out, "forged.rawlog: truncated: the file ends inside an object");
@@ -65,6 +66,14 @@ TEST_F(AllocationLimit, FalseNumbersOfBeams) {
   mrpt::obs::CObservation2DRangeScan scan;
   scan.resizeScanAndAssign(41, 3.F, true);
   expectRefused(scan, number(41), number(0x7fffffff));
+}
+
+// In a std::deque, which takes its memory in small pieces.
+TEST_F(AllocationLimit, FalseNumbersOfRanges) {
+  mrpt::obs::CObservationRange ranges;
+  ranges.sensedData.resize(41);
+  for (const std::uint32_t claim : {5'000'000u, 0xf0000000u})
+    expectRefused(ranges, number(41), number(claim));
 }
 
 // Their memory is aligned.

@@ -2,8 +2,8 @@
 
 namespace polemcl {
 
-AllocationLimit::AllocationLimit(std::size_t most) {
-  if (polemclAllocationLimit) *polemclAllocationLimit() = {most, false};
+AllocationLimit::AllocationLimit(std::size_t bytes) {
+  if (polemclAllocationLimit) *polemclAllocationLimit() = {bytes, false};
 }
 
 AllocationLimit::~AllocationLimit() {

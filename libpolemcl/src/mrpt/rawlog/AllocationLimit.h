@@ -6,15 +6,16 @@
 
 namespace polemcl {
 
-/// \brief While it exists, `new` and `aligned_alloc` throw std::bad_alloc where this thread asks
-/// for more bytes at a time. MRPT's classes take memory for a count or a length in a file before
-/// they read what it counts.
+/// \brief While it exists, `new` and `aligned_alloc` give this thread that many bytes in all, then
+/// throw std::bad_alloc once and limit no more. What is given back does not count. MRPT's classes
+/// take memory for a count or a length in a file before they read what it counts, some of them (a
+/// std::deque) in small pieces.
 ///
 /// Only a program can replace them: ours do (apps/cli/LimitedNew.cpp). In others, such as Python
 /// or MRPT's, and in builds with sanitizers, nothing is limited.
 class AllocationLimit {
  public:
-  explicit AllocationLimit(std::size_t most);
+  explicit AllocationLimit(std::size_t bytes);
   ~AllocationLimit();
   AllocationLimit(const AllocationLimit&) = delete;
   AllocationLimit& operator=(const AllocationLimit&) = delete;
@@ -26,7 +27,7 @@ class AllocationLimit {
 
 /// \brief The limit of one thread, as the program that replaces `new` keeps it.
 struct PolemclAllocationLimit {
-  std::size_t most = -1;  ///< bytes at a time
+  std::size_t left = -1;  ///< bytes that it may still ask for
   bool reached = false;
 };
 /// \brief That of the calling thread. Null where the program does not replace `new`.

@@ -196,10 +196,11 @@ void RawlogReader::explain(std::uint64_t offset, const std::string& what) {
               " is damaged: " + mrptReason(what));
 }
 
-/// A part of an object that is larger than this is one that the file does not hold.
-std::size_t RawlogReader::mostAtATime() const {
+/// Bytes of memory that one object may take. What needs more is not in the file: MRPT's classes
+/// hold their content up to four times while they read it.
+std::size_t RawlogReader::mostOfAnObject() const {
   return m_growing ? std::numeric_limits<std::size_t>::max()
-                   : io::mostInflated(m_stream.getTotalBytesCount());
+                   : 4 * io::mostInflated(m_stream.getTotalBytesCount());
 }
 
 /// Reads one object of the file; nullopt at its end.
@@ -214,7 +215,7 @@ std::optional<RawlogReader::Object> RawlogReader::readObject() {
     }
     return std::nullopt;
   }
-  const AllocationLimit limit(mostAtATime());
+  const AllocationLimit limit(mostOfAnObject());
   std::string what;
   try {
     Object object{RawlogArchive(m_stream).readEntry(), offset};
