@@ -5,7 +5,7 @@
 #   --full    all steps, which take hours
 #   lint      format, spelling, hard phrases, ends of lines and files
 #   unit      the unit tests
-#   test      all tests, files of earlier releases, the installed programs and examples
+#   test      all tests, files of earlier releases, the installed programs and examples, a kill of each command
 #   tidy      clang-tidy
 #   golden    figures compared with those of the last release
 #   mutation  whether the tests notice faults put into the program
@@ -56,6 +56,7 @@ all_tests() {
   run_tests "$top/build"
   "$top/tests/releases/run.sh"
   "$top/tests/install/run.sh" "$top/build"
+  "$top/tests/faults/run.sh" 1 kill
 }
 
 sanitize() {

@@ -39,13 +39,13 @@ title = Two drives
 runs = 1
 settings = once
 [sessions]
-names = first second
+names = mapped later_drive
 source = simulated
 input = demo.ini
 set = simulation.detections=hdl32e.json world.length_m=60 world.day={day}
 [setting once]
 config = demo.ini
-map_sessions = first
+map_sessions = mapped
 sessions = later
 """
 TREES = "lon,lat\n13.4,52.5\n13.4001,52.500{day}\n"
