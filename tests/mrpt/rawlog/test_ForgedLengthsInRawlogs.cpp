@@ -225,7 +225,9 @@ TEST(ForgedLengths, MovementsWithoutADistribution) {
   const std::string name = header("mrpt::obs::CActionRobotMovement2D"), method = number(1);
   const std::string actions =
       header("mrpt::obs::CActionCollection") + std::string(1, '\0') + number(1);
-  for (const std::string& other : {header("nullptr") + "\x88", bytesOf(mrpt::poses::CPose2D())})
+  const std::string abstract = header("mrpt::poses::CPosePDF") + std::string(1, '\0');
+  for (const std::string& other :
+       {header("nullptr") + "\x88", bytesOf(mrpt::poses::CPose2D()), abstract})
     for (const std::string& version :
          {std::string(1, '\0'), std::string("\1"), "\2" + method, "\3" + method, "\7" + method})
       EXPECT_HAS(rawlogRefusal(folder, actions + name + version + other),

@@ -87,7 +87,9 @@ RawlogArchive::Header RawlogArchive::readHeader() {
 }
 
 CSerializable::Ptr RawlogArchive::readObject(const Header& header) {
-  auto object = std::dynamic_pointer_cast<CSerializable>(header.known->createObject());
+  CSerializable::Ptr object;
+  if (header.known->ptrCreateObject)  // the class is not abstract
+    object = std::dynamic_pointer_cast<CSerializable>(header.known->createObject());
   if (!object) throw std::runtime_error("a class without content, '" + header.name + "'");
   if (header.known == CLASS_ID(CActionRobotMovement2D)) requireDistribution(header.version);
   internal_ReadObject(object.get(), header.name, header.old, header.version);
@@ -102,7 +104,8 @@ void RawlogArchive::requireDistribution(std::int8_t version) {
   const bool hasOne = isFirst || ReadAs<std::int32_t>() != CActionRobotMovement2D::emOdometry;
   const auto* known = hasOne ? readHeader().known : nullptr;
   m_keeps = false;
-  if (hasOne && !(known && known->derivedFrom(CLASS_ID(mrpt::poses::CPosePDF))))
+  if (hasOne && !(known && known->derivedFrom(CLASS_ID(mrpt::poses::CPosePDF)) &&
+                  known->ptrCreateObject))  // abstract classes have none
     throw std::runtime_error("a movement without a distribution of poses");
 }
 
