@@ -3,6 +3,7 @@
 /// them. Not with sanitizers, which bring their own.
 
 #include <cstdlib>
+#include <exception>
 #include <new>
 
 #include "mrpt/rawlog/AllocationLimit.h"
@@ -18,12 +19,14 @@ namespace {
 
 void requireAllowed(std::size_t size) {
   PolemclAllocationLimit& limit = *polemclAllocationLimit();
-  if (size > limit.left) {
-    limit = {};  // the error needs memory, too
-    limit.reached = true;
-    throw std::bad_alloc();
+  if (size <= limit.left) {
+    limit.left -= size;
+    return;
   }
-  limit.left -= size;
+  // An error needs memory, too: MRPT's what() takes some, and must not throw.
+  if (std::current_exception() || std::uncaught_exceptions() > 0) return;
+  limit.reached = true;
+  throw std::bad_alloc();
 }
 
 }  // namespace

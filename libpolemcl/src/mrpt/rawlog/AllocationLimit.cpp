@@ -7,10 +7,10 @@ AllocationLimit::AllocationLimit(std::size_t bytes) {
 }
 
 AllocationLimit::~AllocationLimit() {
-  if (polemclAllocationLimit) *polemclAllocationLimit() = {};
+  if (polemclAllocationLimit) polemclAllocationLimit()->left = -1;
 }
 
-bool AllocationLimit::reached() const {
+bool AllocationLimit::reached() {
   return polemclAllocationLimit && polemclAllocationLimit()->reached;
 }
 

@@ -7,9 +7,9 @@
 namespace polemcl {
 
 /// \brief While it exists, `new` and `aligned_alloc` give this thread that many bytes in all, then
-/// throw std::bad_alloc once and limit no more. What is given back does not count. MRPT's classes
-/// take memory for a count or a length in a file before they read what it counts, some of them (a
-/// std::deque) in small pieces.
+/// throw std::bad_alloc. What is given back does not count, nor what the handling of an exception
+/// takes. MRPT's classes take memory for a count or a length in a file before they read what it
+/// counts, some of them (a std::deque) in small pieces.
 ///
 /// Only a program can replace them: ours do (apps/cli/LimitedNew.cpp). In others, such as Python
 /// or MRPT's, and in builds with sanitizers, nothing is limited.
@@ -19,8 +19,8 @@ class AllocationLimit {
   ~AllocationLimit();
   AllocationLimit(const AllocationLimit&) = delete;
   AllocationLimit& operator=(const AllocationLimit&) = delete;
-  /// \brief True once `new` has refused something because of it.
-  bool reached() const;
+  /// \brief Whether `new` has refused something because of the last one of this thread.
+  static bool reached();
 };
 
 }  // namespace polemcl

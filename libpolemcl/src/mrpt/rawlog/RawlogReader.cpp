@@ -218,21 +218,21 @@ std::optional<RawlogReader::Object> RawlogReader::readObject() {
     }
     return std::nullopt;
   }
-  const AllocationLimit limit(mostOfAnObject());
   std::string what;
   try {
+    const AllocationLimit limit(mostOfAnObject());
     Object object{RawlogArchive(m_stream).readEntry(), offset};
     ++m_objects;
     return object;
   } catch (const std::bad_alloc& error) {
-    if (!limit.reached()) throw;  // the machine's fault, not the file's
+    if (!AllocationLimit::reached()) throw;  // the machine's fault, not the file's
     what = error.what();
   } catch (const std::exception& error) {
     what = error.what();
     if (what.rfind(m_name + ": ", 0) == 0) throw;  // about the file itself, not its content
   }
   // An unknown class may also be the first to reach the end of the data.
-  const bool endsBefore = m_stream.cutShort() || limit.reached();
+  const bool endsBefore = m_stream.cutShort() || AllocationLimit::reached();
   if (!endsBefore || !unregisteredClass(what).empty()) explain(offset, what);
   endsHere(offset);
   return std::nullopt;
