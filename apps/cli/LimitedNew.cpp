@@ -3,7 +3,6 @@
 /// them. Not with sanitizers, which bring their own.
 
 #include <cstdlib>
-#include <exception>
 #include <new>
 
 #include "mrpt/rawlog/AllocationLimit.h"
@@ -19,12 +18,10 @@ namespace {
 
 void requireAllowed(std::size_t size) {
   PolemclAllocationLimit& limit = *polemclAllocationLimit();
-  if (size <= limit.left) {
-    limit.left -= size;
-    return;
-  }
-  // An error needs memory, too: MRPT's what() takes some, and must not throw.
-  if (std::current_exception() || std::uncaught_exceptions() > 0) return;
+  limit.taken = size == limit.piece ? limit.taken + size : size;
+  limit.piece = size;
+  if (limit.taken <= limit.most) return;
+  limit.taken = 0;
   limit.reached = true;
   throw std::bad_alloc();
 }

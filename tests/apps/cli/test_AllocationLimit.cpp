@@ -7,7 +7,6 @@
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationRange.h>
 
-#include "io/file/ReadLimits.h"
 #include "support/Samples.h"
 #include "support/Shell.h"
 
@@ -75,16 +74,6 @@ TEST_F(AllocationLimit, FalseNumbersOfRanges) {
   ranges.sensedData.resize(41);
   for (const std::uint32_t claim : {5'000'000u, 0xf0000000u})
     expectRefused(ranges, number(41), number(claim));
-}
-
-// Nothing is left for the error after the false number.
-TEST_F(AllocationLimit, ErrorsNeedMemoryToo) {
-  mrpt::obs::CObservationRange ranges;
-  ranges.sensedData.resize(41);
-  // 65 bytes for each in a std::deque, of what the reader allows for a file of this size.
-  const std::size_t allowed = 4 * io::mostInflated(samples::bytesOf(ranges).size());
-  for (const std::uint32_t less : {20u, 100u, 400u, 1600u})
-    expectRefused(ranges, number(41), number(static_cast<std::uint32_t>(allowed / 65) - less));
 }
 
 // Their memory is aligned.

@@ -2,15 +2,15 @@
 
 namespace polemcl {
 
-AllocationLimit::AllocationLimit(std::size_t bytes) {
-  if (polemclAllocationLimit) *polemclAllocationLimit() = {bytes, false};
+AllocationLimit::AllocationLimit(std::size_t most) {
+  if (polemclAllocationLimit) *polemclAllocationLimit() = {most};
 }
 
 AllocationLimit::~AllocationLimit() {
-  if (polemclAllocationLimit) polemclAllocationLimit()->left = -1;
+  if (polemclAllocationLimit) *polemclAllocationLimit() = {};
 }
 
-bool AllocationLimit::reached() {
+bool AllocationLimit::reached() const {
   return polemclAllocationLimit && polemclAllocationLimit()->reached;
 }
 

@@ -199,11 +199,10 @@ void RawlogReader::explain(std::uint64_t offset, const std::string& what) {
               " is damaged: " + mrptReason(what));
 }
 
-/// Bytes of memory that one object may take. What needs more is not in the file: MRPT's classes
-/// hold their content up to four times while they read it.
-std::size_t RawlogReader::mostOfAnObject() const {
+/// A part of an object that is larger than this is one that the file does not hold.
+std::size_t RawlogReader::mostAtATime() const {
   return m_growing ? std::numeric_limits<std::size_t>::max()
-                   : 4 * io::mostInflated(m_stream.getTotalBytesCount());
+                   : io::mostInflated(m_stream.getTotalBytesCount());
 }
 
 /// Reads one object of the file; nullopt at its end.
@@ -218,21 +217,21 @@ std::optional<RawlogReader::Object> RawlogReader::readObject() {
     }
     return std::nullopt;
   }
+  const AllocationLimit limit(mostAtATime());
   std::string what;
   try {
-    const AllocationLimit limit(mostOfAnObject());
     Object object{RawlogArchive(m_stream).readEntry(), offset};
     ++m_objects;
     return object;
   } catch (const std::bad_alloc& error) {
-    if (!AllocationLimit::reached()) throw;  // the machine's fault, not the file's
+    if (!limit.reached()) throw;  // the machine's fault, not the file's
     what = error.what();
   } catch (const std::exception& error) {
     what = error.what();
     if (what.rfind(m_name + ": ", 0) == 0) throw;  // about the file itself, not its content
   }
   // An unknown class may also be the first to reach the end of the data.
-  const bool endsBefore = m_stream.cutShort() || AllocationLimit::reached();
+  const bool endsBefore = m_stream.cutShort() || limit.reached();
   if (!endsBefore || !unregisteredClass(what).empty()) explain(offset, what);
   endsHere(offset);
   return std::nullopt;

@@ -39,7 +39,7 @@ class RawlogReader : public EntrySource {
     mrpt::serialization::CSerializable::Ptr object;
     std::uint64_t offset = 0;
   };
-  std::size_t mostOfAnObject() const;
+  std::size_t mostAtATime() const;
   std::optional<Object> readObject();
   std::optional<Object> nextObject();
   void endsHere(std::uint64_t offset);
