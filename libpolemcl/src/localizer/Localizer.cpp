@@ -8,6 +8,7 @@
 #include "localizer/ScanOdometry.h"
 #include "localizer/SettingsValues.h"
 #include "mrpt/filter/LocalizationPipeline.h"
+#include "mrpt/observation/LidarFrame.h"
 #include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl {
@@ -159,8 +160,7 @@ void Localizer::setRecordedTiming(const ScanTiming& timing) {
 
 LocalizationUpdate Localizer::step(double time, const PointsView& points,
                                    const Eigen::Isometry3d& T_robot_lidar) {
-  const Eigen::Matrix3d turn = T_robot_lidar.linear();
-  if (!T_robot_lidar.matrix().allFinite() || !turn.isUnitary(1e-3) || turn.determinant() < 0)
+  if (!isPose(T_robot_lidar.matrix()))
     throw Error("T_robot_lidar is no pose: a finite place and a rotation are needed");
   auto scan = observationOf(time, points);
   scan.sensorPose = mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_robot_lidar.matrix()));

@@ -362,13 +362,19 @@ TEST(ObservationPoleExtractor, RefusesOtherObservations) {
   EXPECT_TRUE(ObservationPoleExtractor::canProcess(CObservationRotatingScan()));
 }
 
-TEST(ObservationPoleExtractor, RefusesSensorPosesThatAreNotFinite) {
+// MRPT reads a matrix as it is.
+TEST(ObservationPoleExtractor, RefusesSensorPosesThatAreNoPoses) {
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
   ObservationPoleExtractor extraction(options);
   for (const CPose3D& pose :
        {CPose3D(NAN, 0, 0, 0, 0, 0), CPose3D(0, 0, INFINITY, 0, 0, 0), CPose3D(0, 0, 0, 0, NAN, 0)})
     EXPECT_HAS(refusal(extraction, *observationOf(cloud, pose)), "sensor pose");
+  for (const double number : std::vector<double>{NAN, INFINITY, 0, -1, 1.1}) {
+    mrpt::math::CMatrixDouble44 matrix = mrpt::math::CMatrixDouble44::Identity();
+    matrix(1, 1) = number;
+    EXPECT_HAS(refusal(extraction, *observationOf(cloud, CPose3D(matrix))), "sensor pose");
+  }
   auto known = options;
   known.sensorPose = CPose3D();
   EXPECT_FALSE(ObservationPoleExtractor(known)

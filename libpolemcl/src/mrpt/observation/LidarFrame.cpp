@@ -5,6 +5,11 @@
 
 namespace polemcl {
 
+bool isPose(const Eigen::Matrix4d& matrix) {
+  const Eigen::Matrix3d turn = matrix.topLeftCorner<3, 3>();
+  return matrix.allFinite() && turn.isUnitary(1e-3) && turn.determinant() > 0;
+}
+
 LidarFrame lidarFrame(const mrpt::poses::CPose3D& sensorPose, const SensorOptions& sensor,
                       bool level) {
   LidarFrame f;

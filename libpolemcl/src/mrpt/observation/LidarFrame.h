@@ -28,6 +28,9 @@ struct LidarFrame {
 LidarFrame lidarFrame(const mrpt::poses::CPose3D& sensorPose, const SensorOptions& sensor,
                       bool level = false);
 
+/// \brief Whether the matrix is a pose: a finite place and a rotation. MRPT reads any numbers.
+bool isPose(const Eigen::Matrix4d& matrix);
+
 /// \brief Transforms points to the LiDAR frame; reuses its buffers.
 class MovedPoints {
  public:

@@ -90,9 +90,9 @@ mrpt::poses::CPose3D ObservationPoleExtractorOptions::poseOf(
   mrpt::poses::CPose3D pose;
   observation.getSensorPose(pose);
   if (sensorPose) pose = *sensorPose;
-  if (!pose.asVectorVal().asEigen().allFinite())
+  if (!isPose(pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen()))
     throw Error(std::string("the sensor pose of a ") + observation.GetRuntimeClass()->className +
-                " is not finite: give the right one with --sensor-pose");
+                " is not a finite place and a rotation: give the right one with --sensor-pose");
   return pose;
 }
 
