@@ -203,8 +203,7 @@ void ObservationPoleExtractor::Impl::compare(const mrpt::obs::CObservation& obse
 ObservationPoleExtractor::UnorderedScan::UnorderedScan()
     : Error(
           "the points of the cloud are not in the order of measuring, so moving_cut = true finds "
-          "no "
-          "begin of the scan; cut_deg names a fixed one") {}
+          "no begin of the scan; cut_deg names a fixed one") {}
 
 ObservationPoleExtractor::ObservationPoleExtractor(const ObservationPoleExtractorOptions& options)
     : m_impl(std::make_unique<Impl>(options)) {}
