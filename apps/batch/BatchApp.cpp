@@ -159,7 +159,6 @@ void doBatch(const BatchOptions& options) {
   try {
     const auto results = collectBatch(folder, plan, spec, failures, commandOf(options, spec));
     writeBatchFiles(folder, results, timings);
-    writeReport(folder);
     if (!options.quiet)
       std::cout << "report: " << (folder.path() / "report.html").string() << std::endl;
     requireAllDone(folder, plan, results);

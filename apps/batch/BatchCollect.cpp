@@ -11,10 +11,10 @@
 #include <thread>
 
 #include "batch/BatchCommands.h"
-#include "batch/BatchRunner.h"
 #include "cli/Version.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
+#include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
 #include "io/file/Process.h"
 #include "io/file/TextFile.h"
@@ -310,16 +310,14 @@ void removeResults(const BatchFolder& folder) {
 
 void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,
                      const Json& timings) {
-  report::writeResultsJson(folder.path() / "results.json", results);
   writeJson(folder.path() / "timings.json", timings);
-}
-
-void writeReport(const BatchFolder& folder) {
+  const std::string text = report::resultsJson(results);
   try {
     std::vector<std::string> command = io::pythonScript("report.py");
-    command.emplace_back(".");
-    runCommand(command, folder.path(), fs::absolute(folder.log("report")));
+    command.insert(command.end(), {fs::absolute(folder.path()).string(), "-"});
+    io::runFilter(command, text);
   } catch (const Error& error) {
+    io::writeFile(folder.path() / "results.json", text);
     throw Error(
         "report.html, table.tex, the CSV files and `summary` of results.json are not written, "
         "all other results are: " +

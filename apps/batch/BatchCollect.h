@@ -33,14 +33,11 @@ Json collectTimings(const BatchFolder& folder, const BatchPlan& plan);
 /// \brief Removes all results and the report of an earlier state of the batch.
 void removeResults(const BatchFolder& folder);
 
-/// \brief Writes `results.json`, without `summary`, and `timings.json` into the batch's folder.
-/// \throws Error when one cannot be written.
+/// \brief Writes `timings.json` into the batch's folder, and by the script share/report/report.py
+/// `results.json`, `report.html`, `table.tex`, `runs.csv`, `sessions.csv` and `maps.csv`. Where the
+/// script cannot work, `results.json` has no `summary`. \throws Error then, with the script's last
+/// line, which names the packages that it misses; also when a file cannot be written.
 void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,
                      const Json& timings);
-
-/// \brief Makes `report.html`, `table.tex`, `runs.csv`, `sessions.csv` and `maps.csv` of these
-/// files and adds `summary` to `results.json`, by the script share/report/report.py. \throws Error
-/// with the script's last line, which names the packages that it misses.
-void writeReport(const BatchFolder& folder);
 
 }  // namespace polemcl::apps

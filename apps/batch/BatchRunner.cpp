@@ -42,6 +42,23 @@ void copyFiles(const std::vector<std::string>& command, const fs::path& folder) 
   if (failure) throw Error(command.at(1) + ": cannot be copied: " + failure.message());
 }
 
+/// A program of the project, or `copy FROM TO`. Command and output are added to the log. Throws
+/// Error with the last line of the output.
+void runCommand(const std::vector<std::string>& command, const fs::path& folder,
+                const fs::path& log) {
+  {
+    std::ofstream stream(log, std::ios::app);
+    stream << "$";
+    for (const auto& argument : command) stream << ' ' << shellQuoted(argument);
+    stream << '\n';
+    if (!stream.flush()) throw Error(log.string() + ": cannot be written; is the disk full?");
+  }
+  if (command.front() == "copy") return copyFiles(command, folder);
+  std::vector<std::string> started = command;
+  started.front() = programFolder() / command.front();
+  io::runLogged(started, folder, log);
+}
+
 void doTask(const BatchFolder& folder, const BatchTask& task) {
   for (const auto& need : task.needs)
     if (!fs::exists(folder.work(need) / "done.json"))
@@ -144,21 +161,6 @@ fs::path programFolder() {
   if (const char* folder = std::getenv("POLEMCL_BIN"); folder && *folder)
     return fs::absolute(folder);
   return io::programFolder();
-}
-
-void runCommand(const std::vector<std::string>& command, const fs::path& folder,
-                const fs::path& log) {
-  {
-    std::ofstream stream(log, std::ios::app);
-    stream << "$";
-    for (const auto& argument : command) stream << ' ' << shellQuoted(argument);
-    stream << '\n';
-    if (!stream.flush()) throw Error(log.string() + ": cannot be written; is the disk full?");
-  }
-  if (command.front() == "copy") return copyFiles(command, folder);
-  std::vector<std::string> started = command;
-  started.front() = programFolder() / command.front();
-  io::runLogged(started, folder, log);
 }
 
 TaskOutcome runTask(const BatchFolder& folder, const BatchTask& task) {

@@ -25,12 +25,6 @@ struct TaskOutcome {
 /// \brief Folder of the programs: POLEMCL_BIN, or where this program lies.
 std::filesystem::path programFolder();
 
-/// \brief Runs a command in a folder: a program of the project, one by its path, or `copy FROM TO`.
-/// Command and output are added to the log. \throws Error with the last line of its output when it
-/// fails.
-void runCommand(const std::vector<std::string>& command, const std::filesystem::path& folder,
-                const std::filesystem::path& log);
-
 /// \brief Does one task, unless it is done: its commands one after the other in a folder of its
 /// own, what they say into its log. Never throws: what goes wrong is the outcome.
 TaskOutcome runTask(const BatchFolder& folder, const BatchTask& task);

@@ -1,7 +1,8 @@
 """Report of a batch: from results.json to report.html, table.tex, runs.csv, sessions.csv and maps.csv.
 
-Usage: report.py FOLDER
+Usage: report.py FOLDER [-]
   FOLDER  folder of the batch, with results.json; timings.json is shown where it is there
+  -       the results are read from standard input, not from results.json
 
 It also adds `summary` to results.json: means and spreads over runs and over sessions. Needs the Debian
 packages python3-jinja2 and python3-matplotlib. The same results give the same bytes.
@@ -257,13 +258,14 @@ def read(file):
 
 
 def main():
-    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+    if len(sys.argv) < 2 or sys.argv[1].startswith("-") or sys.argv[2:] not in ([], ["-"]):
         print(__doc__.split("\n\n")[1], file=sys.stderr)
         return 2
     folder = Path(sys.argv[1])
     timings = folder / "timings.json"
     try:
-        results = summaries.summed_up(read(folder / "results.json"))
+        written = json.load(sys.stdin.buffer) if sys.argv[2:] else read(folder / "results.json")
+        results = summaries.summed_up(written)
         report = Report(results, read(timings) if timings.exists() else None)
         texts = {"results.json": files.json_text(results) + "\n", "runs.csv": files.runs_csv(results),
                  "sessions.csv": files.sessions_csv(results), "maps.csv": files.maps_csv(results),

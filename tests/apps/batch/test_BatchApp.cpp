@@ -221,7 +221,11 @@ TEST_F(BatchApp, WithoutItsPackagesTheReportAloneIsMissing) {
   fs::copy(*s_folder / "done", *s_folder / "bare", fs::copy_options::recursive);
   for (const char* file : {"report.html", "table.tex", "results.json", "runs.csv"})
     fs::remove(*s_folder / "bare" / file);
-  writeText(*s_folder / "python/matplotlib.py", "raise ImportError('No Matplotlib here')\n");
+  // results.json must not be seen before it is complete.
+  const fs::path seen = *s_folder / "seen.txt";
+  writeText(*s_folder / "python/matplotlib.py",
+            "import os\nopen('" + seen.string() + "', 'w').write(' '.join(os.listdir('" +
+                (*s_folder / "bare").string() + "')))\nraise ImportError('No Matplotlib here')\n");
   ::setenv("PYTHONPATH", (*s_folder / "python").c_str(), 1);
   BatchOptions options = optionsFor("bare");
   options.resume = true;
@@ -233,6 +237,8 @@ TEST_F(BatchApp, WithoutItsPackagesTheReportAloneIsMissing) {
                           0),
             0u)
       << message;
+  EXPECT_HAS(readText(seen), "timings.json");
+  EXPECT_EQ(readText(seen).find("results.json"), std::string::npos);
   EXPECT_FALSE(fs::exists(*s_folder / "bare/report.html"));
   EXPECT_FALSE(fs::exists(*s_folder / "bare/runs.csv"));
   EXPECT_EQ(resultsIn(*s_folder / "bare")["results"].size(), 6u);

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "io/file/AtomicFile.h"
 #include "report/batch/BatchJson.h"
 #include "support/SampleBatches.h"
 #include "support/TempFolder.h"
@@ -10,12 +11,9 @@
 namespace polemcl::report::test_batch_json {
 namespace {
 using testing_apps::readText;
-using testing_apps::TempFolder;
 
 nlohmann::json jsonOf(const BatchResults& batch) {
-  const TempFolder folder;
-  writeResultsJson(folder / "a.json", batch);
-  return nlohmann::json::parse(readText(folder / "a.json"));
+  return nlohmann::json::parse(resultsJson(batch));
 }
 
 TEST(BatchJson, HoldsAllThatTheBatchTells) {
@@ -53,10 +51,8 @@ TEST(BatchJson, HoldsAllThatTheBatchTells) {
 TEST(BatchJson, TheReportIsTestedOnTheSampleBatch) {
   // tests/report/batch/test_report.py reads this file.
   const std::string sample = std::string(POLEMCL_SOURCE_DIR) + "/tests/report/batch/sample.json";
-  if (std::getenv("POLEMCL_WRITE_PAGES")) writeResultsJson(sample, scoredBatch());
-  const TempFolder folder;
-  writeResultsJson(folder / "a.json", scoredBatch());
-  EXPECT_EQ(readText(folder / "a.json"), readText(sample))
+  if (std::getenv("POLEMCL_WRITE_PAGES")) io::writeFile(sample, resultsJson(scoredBatch()));
+  EXPECT_EQ(resultsJson(scoredBatch()), readText(sample))
       << "write it anew with POLEMCL_WRITE_PAGES=1";
 }
 

@@ -337,8 +337,15 @@ class Usage(unittest.TestCase):
         with contextlib.redirect_stderr(said), unittest.mock.patch("sys.argv", ["report.py", *arguments]):
             return report.main(), said.getvalue()
 
+    def test_reads_standard_input(self):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, "-B", SHARE / "report/report.py", folder, "-"], check=True,
+                           input=json.dumps(WRITTEN).encode())
+            self.assertEqual((pathlib.Path(folder) / "results.json").read_text(), files.json_text(SAMPLE) + "\n")
+
     def test_says_what_is_wrong_in_one_line(self):
         self.assertEqual(self.run_script()[0], 2)
+        self.assertEqual(self.run_script("folder", "results.json")[0], 2)
         code, said = self.run_script("/not/there")
         self.assertEqual((code, said.count("\n")), (1, 1))
         self.assertIn("/not/there/results.json", said)

@@ -2,8 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/file/AtomicFile.h"
-
 namespace polemcl::report {
 namespace {
 
@@ -144,10 +142,9 @@ Json jsonOf(const BatchResults& batch) {
 
 }  // namespace
 
-void writeResultsJson(const std::filesystem::path& file, const BatchResults& results) {
+std::string resultsJson(const BatchResults& results) {
   // What a failed task said need not be UTF-8.
-  const auto replace = Json::error_handler_t::replace;
-  io::writeFile(file, jsonOf(results).dump(2, ' ', false, replace) + '\n');
+  return jsonOf(results).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace polemcl::report
