@@ -141,24 +141,28 @@ void doBatch(const BatchOptions& options) {
   const BatchPlan plan = planBatch(spec);
   BatchFolder folder(options.output);
   folder.take(spec.name, options.resume);
-  folder.store(plan, spec.file);
   const OpenTasks open = openTasks(folder, plan);
+  removeResults(folder, !open.tasks.empty());  // before the plan changes, which they belong to
+  folder.store(plan, spec.file);
   for (const BatchTask* task : open.outdated) folder.remove(*task);
-  if (!open.tasks.empty()) removeResults(folder);
   if (!options.quiet) printOpen(plan, open);
 
   const auto begin = std::chrono::steady_clock::now();
   const Failures failures = options.slurm ? runThere(options, folder, plan, open.tasks)
                                           : runHere(options, folder, plan, open.tasks);
   folder.sweep();
-  Json timings = collectTimings(folder, plan);
-  if (open.tasks.size() == plan.tasks.size()) {
-    timings["wall_s"] = secondsSince(begin);
-    timings["jobs"] = options.slurm ? 0 : jobsOf(options);
-  }
+  const std::filesystem::path times = folder.path() / "timings.json";
   try {
+    if (!std::filesystem::exists(times)) {
+      Json timings = collectTimings(folder, plan);
+      if (open.tasks.size() == plan.tasks.size()) {
+        timings["wall_s"] = secondsSince(begin);
+        timings["jobs"] = options.slurm ? 0 : jobsOf(options);
+      }
+      writeJson(times, timings);
+    }
     const auto results = collectBatch(folder, plan, spec, failures, commandOf(options, spec));
-    writeBatchFiles(folder, results, timings);
+    writeBatchFiles(folder, results);
     if (!options.quiet)
       std::cout << "report: " << (folder.path() / "report.html").string() << std::endl;
     requireAllDone(folder, plan, results);

@@ -302,22 +302,23 @@ Json collectTimings(const BatchFolder& folder, const BatchPlan& plan) {
   return timings;
 }
 
-void removeResults(const BatchFolder& folder) {
-  for (const char* name : {"report.html", "table.tex", "results.json", "runs.csv", "sessions.csv",
-                           "maps.csv", "timings.json"})
+void removeResults(const BatchFolder& folder, bool timings) {
+  for (const char* name :
+       {"results.json", "report.html", "table.tex", "runs.csv", "sessions.csv", "maps.csv"})
     fs::remove(folder.path() / name);
+  if (timings) fs::remove(folder.path() / "timings.json");
+  io::syncFolder(folder.path());
 }
 
-void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,
-                     const Json& timings) {
-  writeJson(folder.path() / "timings.json", timings);
+void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results) {
   const std::string text = report::resultsJson(results);
   try {
     std::vector<std::string> command = io::pythonScript("report.py");
     command.insert(command.end(), {fs::absolute(folder.path()).string(), "-"});
     io::runFilter(command, text);
   } catch (const Error& error) {
-    io::writeFile(folder.path() / "results.json", text);
+    const fs::path file = folder.path() / "results.json";
+    if (!fs::exists(file)) io::writeFile(file, text);
     throw Error(
         "report.html, table.tex, the CSV files and `summary` of results.json are not written, "
         "all other results are: " +

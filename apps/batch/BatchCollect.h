@@ -30,14 +30,14 @@ report::BatchResults collectBatch(const BatchFolder& folder, const BatchPlan& pl
 /// caller may know them.
 Json collectTimings(const BatchFolder& folder, const BatchPlan& plan);
 
-/// \brief Removes all results and the report of an earlier state of the batch.
-void removeResults(const BatchFolder& folder);
+/// \brief Removes results and report of an earlier state of the batch. \param timings Also
+/// `timings.json`.
+void removeResults(const BatchFolder& folder, bool timings);
 
-/// \brief Writes `timings.json` into the batch's folder, and by the script share/report/report.py
-/// `results.json`, `report.html`, `table.tex`, `runs.csv`, `sessions.csv` and `maps.csv`. Where the
-/// script cannot work, `results.json` has no `summary`. \throws Error then, with the script's last
-/// line, which names the packages that it misses; also when a file cannot be written.
-void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,
-                     const Json& timings);
+/// \brief Writes `report.html`, `table.tex`, `runs.csv`, `sessions.csv`, `maps.csv`, and, last,
+/// `results.json` into the batch's folder, by the script share/report/report.py. Where that cannot
+/// work, `results.json` alone, without `summary`. \throws Error then, with the script's last line,
+/// which names the packages that it misses; also when a file cannot be written.
+void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results);
 
 }  // namespace polemcl::apps

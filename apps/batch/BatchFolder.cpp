@@ -22,6 +22,7 @@ namespace {
 
 constexpr const char* kMarker = "plan.json";
 constexpr const char* kLock = ".lock";
+constexpr const char* kFolders[] = {"tasks", "logs", "failed", "times", "settings", "files"};
 
 std::uint32_t checksumOf(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -82,6 +83,31 @@ void createFolder(const fs::path& folder) {
   if (failure) throw Error(folder.string() + ": cannot be created: " + failure.message());
 }
 
+/// A folder of somebody else must not lead to files outside of it.
+void requireNoLinks(const fs::path& folder, bool recursive) {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    if (entry.is_symlink(none))
+      throw Error(entry.path().string() +
+                  ": is a link, as no batch makes any; remove it, or choose another --output");
+    if (recursive && entry.is_directory(none)) requireNoLinks(entry.path(), false);
+  }
+}
+
+/// A batch that was cut short before its plan was written: it holds what store() writes, and
+/// nothing else.
+bool isBegun(const fs::path& folder) {
+  std::error_code none;
+  if (!fs::is_regular_file(folder / kLock, none)) return false;
+  const auto isOurs = [](const fs::directory_entry& entry) {
+    const std::string name = entry.path().filename().string();
+    return name == kLock || name == "batch.ini" || io::isTemporaryOf("batch.ini", name) ||
+           io::isTemporaryOf(kMarker, name) ||
+           std::find(std::begin(kFolders), std::end(kFolders), name) != std::end(kFolders);
+  };
+  return std::all_of(fs::directory_iterator(folder), {}, isOurs);
+}
+
 /// Names of computers in names of files.
 std::string host() {
   std::array<char, 256> name{};
@@ -91,13 +117,14 @@ std::string host() {
 
 }  // namespace
 
-BatchFolder::BatchFolder(const fs::path& path) : m_path(fs::absolute(path).lexically_normal()) {}
+BatchFolder::BatchFolder(const fs::path& path) : m_path(fs::absolute(path).lexically_normal()) {
+  if (fs::exists(m_path / kMarker)) requireNoLinks(m_path, true);
+}
 
 void BatchFolder::take(const std::string& name, bool resume) {
   const bool known = fs::exists(m_path / kMarker);
-  // Begun, but cut short before its plan was written: ours as well.
-  const bool begun = known || fs::exists(m_path / kLock);
-  if (!begun && fs::exists(m_path) && (!fs::is_directory(m_path) || !fs::is_empty(m_path)))
+  if (!known && fs::exists(m_path) &&
+      (!fs::is_directory(m_path) || !(fs::is_empty(m_path) || isBegun(m_path))))
     throw Error(m_path.string() + ": exists and holds no batch; choose another --output");
   if (known && !resume)
     throw Error(m_path.string() +
@@ -125,8 +152,7 @@ void BatchFolder::take(const std::string& name, bool resume) {
 void BatchFolder::store(const BatchPlan& plan, const fs::path& batchFile) {
   std::error_code none;
   fs::remove_all(m_path / "failed", none);  // of earlier attempts
-  for (const char* folder : {"tasks", "logs", "failed", "times", "settings", "files"})
-    createFolder(m_path / folder);
+  for (const char* folder : kFolders) createFolder(m_path / folder);
   sweep();
   for (const auto& [name, content] : plan.files) io::writeFile(m_path / name, content);
   io::writeFile(m_path / "batch.ini", io::readBytes(batchFile));
@@ -229,7 +255,11 @@ void BatchFolder::noteFailure(const BatchTask& task, const std::string& reason) 
 }
 
 void BatchFolder::noteTime(const std::string& task, double seconds) const {
-  std::ofstream(m_path / "times" / task) << seconds << '\n';
+  try {
+    io::writeFile(m_path / "times" / task, std::to_string(seconds) + '\n');
+  } catch (const std::exception&) {
+    // The task is done; only its time is not known.
+  }
 }
 
 double BatchFolder::seconds(const std::string& task) const {

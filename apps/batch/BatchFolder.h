@@ -8,7 +8,7 @@
 ///   under way, or left behind;
 /// - `failed/TASK.json`: why the last attempt failed; `logs/TASK.log`: commands and what they said;
 /// - `times/TASK`: seconds that it took: all else is the same whenever the batch is done;
-/// - what writeBatchFiles() writes.
+/// - `timings.json`, and what writeBatchFiles() writes.
 
 #include <filesystem>
 #include <string>
@@ -20,6 +20,7 @@ namespace polemcl::apps {
 
 class BatchFolder {
  public:
+  /// \throws Error when a batch is there, and links, which would lead to files of others.
   explicit BatchFolder(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return m_path; }

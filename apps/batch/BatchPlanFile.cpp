@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 
 #include <polemcl/core/common/Types.h>
 #include "batch/BatchPlan.h"
@@ -10,9 +11,25 @@ namespace {
 
 constexpr const char* kFormat = "polemcl batch plan 2";
 constexpr const char* kKindNames[] = {"poles", "truth", "map", "score", "run"};  // by TaskKind
-/// What tasks may run: a plan that somebody else wrote must not run anything else.
+/// What tasks may run: a plan that somebody else wrote must not do anything else.
 constexpr const char* kPrograms[] = {"copy",     "pole-import",   "pole-simulate", "pole-extract",
                                      "pole-map", "pole-localize", "pole-eval",     "pole-labels"};
+constexpr const char* kOutputs[] = {"--output", "--poles", "--json"};
+constexpr const char* kOptions[] = {"--calib",          "--config",     "--date",    "--estimate",
+                                    "--every",          "--input",      "--map",     "--offset",
+                                    "--odometry-noise", "--one-to-one", "--poses",   "--poses-of",
+                                    "--quiet",          "--radius",     "--runs",    "--seed",
+                                    "--sensor-pose",    "--set",        "--threads", "--truth"};
+
+template <std::size_t n>
+bool isOneOf(const char* const (&names)[n], const std::string& name) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+/// A negative number is no option.
+bool isNumber(const std::string& text) {
+  return text.size() > 1 && (std::isdigit(static_cast<unsigned char>(text[1])) || text[1] == '.');
+}
 
 Json toJson(const BatchTask& task) {
   return {{"id", task.id},           {"kind", name(task.kind)},
@@ -38,17 +55,34 @@ void requireId(const std::string& id, TaskKind kind) {
     throw Error("'" + id + "' is no id of a task; it begins with '" + begin + "' and has no '/'");
 }
 
-void requireKnownProgram(const std::vector<std::string>& command) {
-  if (command.empty()) throw Error("a command is empty");
-  if (std::find(std::begin(kPrograms), std::end(kPrograms), command.front()) == std::end(kPrograms))
-    throw Error("'" + command.front() + "' is no program that a batch runs");
-}
-
 /// A file that a task keeps: in its own folder.
 void requireInside(const std::string& file) {
   const std::filesystem::path path(file);
   if (file.empty() || path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
     throw Error("the output '" + file + "' lies outside the folder of its task");
+}
+
+/// Only what BatchPlan makes: programs of the project that write into the folder of their task.
+void requireHarmless(const std::vector<std::string>& command) {
+  if (command.empty()) throw Error("a command is empty");
+  if (!isOneOf(kPrograms, command.front()))
+    throw Error("'" + command.front() + "' is no program that a batch runs");
+  if (command.front() == "copy") {
+    if (command.size() != 3) throw Error("'copy' needs two files");
+    return requireInside(command[2]);
+  }
+  bool writes = false;
+  for (std::size_t i = 1; i < command.size(); ++i) {
+    const std::string& option = command[i];
+    if (option.empty() || option[0] != '-' || isNumber(option)) continue;
+    if (isOneOf(kOutputs, option)) {
+      requireInside(i + 1 < command.size() ? command[i + 1] : "");
+      writes = true;
+    } else if (!isOneOf(kOptions, option)) {
+      throw Error("'" + option + "' is no option that a batch uses");
+    }
+  }
+  if (!writes) throw Error("'" + command.front() + "' has no output");
 }
 
 BatchTask taskFrom(const Json& json) {
@@ -58,7 +92,7 @@ BatchTask taskFrom(const Json& json) {
   requireId(task.id, task.kind);
   json.at("needs").get_to(task.needs);
   json.at("commands").get_to(task.commands);
-  for (const auto& command : task.commands) requireKnownProgram(command);
+  for (const auto& command : task.commands) requireHarmless(command);
   json.at("outputs").get_to(task.outputs);
   for (const auto& output : task.outputs) requireInside(output);
   json.at("key").get_to(task.key);

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "mrpt/rawlog/AllocationLimit.h"
+#include "mrpt/common/AllocationLimit.h"
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 

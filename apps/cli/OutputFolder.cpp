@@ -21,25 +21,6 @@ fs::path withoutSlash(const fs::path& path) {
   return full.has_filename() ? full : full.parent_path();
 }
 
-void refuseForeign(const fs::path& target, const std::string& what,
-                   const std::vector<std::string>& known, const std::string& marker) {
-  const std::string advice = ", so it is not replaced; choose another folder or remove it";
-  if (!fs::exists(fs::symlink_status(target))) return;
-  if (!fs::is_directory(fs::symlink_status(target)))
-    throw Error(target.string() + ": exists and is not a folder" + advice);
-  if (fs::is_empty(target)) return;
-  for (const auto& entry : fs::recursive_directory_iterator(target)) {
-    const std::string name = entry.path().lexically_relative(target).string();
-    const auto fits = [&](const std::string& pattern) {
-      return ::fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME) == 0;
-    };
-    if (std::none_of(known.begin(), known.end(), fits))
-      throw Error(target.string() + ": holds more than " + what + " (" + name + ")" + advice);
-  }
-  if (!fs::exists(target / marker))
-    throw Error(target.string() + ": is no earlier output (no " + marker + ")" + advice);
-}
-
 /// Renames a folder. An earlier one in that place gets the other name at the same moment.
 std::error_code takePlace(const fs::path& from, const fs::path& to) {
   std::error_code failure;
@@ -61,9 +42,9 @@ std::error_code takePlace(const fs::path& from, const fs::path& to) {
 
 OutputFolder::OutputFolder(const fs::path& target, const std::string& what,
                            const std::vector<std::string>& known, const std::string& marker)
-    : m_target(withoutSlash(target)) {
+    : m_target(withoutSlash(target)), m_what(what), m_marker(marker), m_known(known) {
   try {
-    refuseForeign(m_target, what, known, marker);
+    refuseForeign();
     io::removeLeftovers(m_target);
     for (unsigned number = 0;; ++number) {
       m_temporary = m_target;
@@ -83,8 +64,27 @@ OutputFolder::~OutputFolder() {
   fs::remove_all(m_temporary, ignored);
 }
 
+void OutputFolder::refuseForeign() const {
+  const std::string advice = ", so it is not replaced; choose another folder or remove it";
+  if (!fs::exists(fs::symlink_status(m_target))) return;
+  if (!fs::is_directory(fs::symlink_status(m_target)))
+    throw Error(m_target.string() + ": exists and is not a folder" + advice);
+  if (fs::is_empty(m_target)) return;
+  for (const auto& entry : fs::recursive_directory_iterator(m_target)) {
+    const std::string name = entry.path().lexically_relative(m_target).string();
+    const auto fits = [&](const std::string& pattern) {
+      return ::fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME) == 0;
+    };
+    if (std::none_of(m_known.begin(), m_known.end(), fits))
+      throw Error(m_target.string() + ": holds more than " + m_what + " (" + name + ")" + advice);
+  }
+  if (!fs::exists(m_target / m_marker))
+    throw Error(m_target.string() + ": is no earlier output (no " + m_marker + ")" + advice);
+}
+
 void OutputFolder::commit() {
   io::syncAll(m_temporary);
+  refuseForeign();
   if (const auto failure = takePlace(m_temporary, m_target))
     throw Error(m_target.string() + ": cannot be completed: " + failure.message());
   io::syncFolder(m_target.parent_path());  // before an earlier output goes

@@ -31,11 +31,17 @@ class OutputFolder {
   /// \brief The folder to fill.
   const std::filesystem::path& temporary() const { return m_temporary; }
   /// \brief Gives the folder its name; an earlier output is removed.
-  /// \throws Error when it cannot be renamed; what was there stays.
+  /// \throws Error when it cannot be renamed, or somebody else has written there meanwhile; what
+  /// was
+  ///         there stays.
   void commit();
 
  private:
+  void refuseForeign() const;
+
   std::filesystem::path m_target, m_temporary;
+  std::string m_what, m_marker;
+  std::vector<std::string> m_known;
   io::PathLock m_lock;  ///< on `m_temporary`
 };
 

@@ -11,6 +11,7 @@
 #include "cli/CommandLine.h"
 #include "cli/JsonFile.h"
 #include "cli/Outputs.h"
+#include "io/file/AtomicFile.h"
 
 namespace polemcl::apps {
 
@@ -44,8 +45,10 @@ Subcommand evalCommand(CLI::App& program, const char* name, const char* meaning,
              {"_timings.json"});  // of trials
   return {&cli, [options, evaluate](bool quiet) {
             options->quiet = quiet;
+            io::AtomicFiles together;
             const Figures figures = evaluate(*options);
             if (options->json) writeJson(*options->json, figures.json);
+            together.commit();
             return figures.text;
           }};
 }

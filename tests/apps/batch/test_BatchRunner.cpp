@@ -297,6 +297,25 @@ TEST(BatchFolder, LeavesForeignFoldersAlone) {
   EXPECT_REFUSED(BatchFolder(folder.path()).take("one", true), "holds no batch");
   EXPECT_REFUSED(BatchFolder(folder / "letter.txt").take("one", true), "holds no batch");
   EXPECT_EQ(readText(folder / "letter.txt"), "Dear");
+  writeText(folder / ".lock", "");  // of another program
+  EXPECT_REFUSED(BatchFolder(folder.path()).take("one", false), "holds no batch");
+}
+
+TEST(BatchFolder, OfSomebodyElseDoesNotLeadOutOfIt) {
+  const TempFolder folder;
+  writeText(folder / "batch.ini", "[batch]\n");
+  const fs::path path = folder / "batch";
+  {
+    BatchFolder begun(path);
+    begun.take("one", false);
+    begun.store(BatchPlan(), folder / "batch.ini");
+  }
+  for (const char* name : {"results.json.part", "times/task", "tasks/run.a.b.00"}) {
+    fs::create_symlink(folder / "batch.ini", path / name);
+    EXPECT_REFUSED(BatchFolder{path}, (path / name).string() + ": is a link");
+    fs::remove(path / name);
+  }
+  EXPECT_NO_THROW(BatchFolder{path});
 }
 
 TEST_F(BatchRunner, SaysWhichBuildDidWhatIsDoneAgain) {

@@ -1,10 +1,12 @@
 // Programs take no memory for what a rawlog only claims to hold.
 
 #include <gtest/gtest.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationRange.h>
 
 #include "support/Samples.h"
@@ -21,17 +23,23 @@ std::string number(std::uint32_t value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
+std::string forged(std::string bytes, const std::string& there, const std::string& instead) {
+  const auto at = bytes.find(there);
+  EXPECT_NE(at, std::string::npos);
+  return bytes.replace(at, there.size(), instead);
+}
+
+/// With 1 GB of address space.
+Outcome extract(const std::string& arguments) {
+  return shell("ulimit -v 1000000; '" + (bin / "pole-extract").string() + "' " + arguments);
+}
+
 /// A rawlog in which one number is another takes neither the memory that it claims nor 1 GB.
 void expectRefused(const mrpt::obs::CObservation& observation, const std::string& there,
                    const std::string& instead) {
   const TempFolder folder;
-  std::string bytes = samples::bytesOf(observation);
-  const auto at = bytes.find(there);
-  EXPECT_NE(at, std::string::npos);
-  bytes.replace(at, there.size(), instead);
-  writeText(folder / "forged.rawlog", bytes);
-  const Outcome outcome = shell("ulimit -v 1000000; '" + (bin / "pole-extract").string() +
-                                "' --inspect '" + (folder / "forged.rawlog").string() + "'");
+  writeText(folder / "forged.rawlog", forged(samples::bytesOf(observation), there, instead));
+  const Outcome outcome = extract("--inspect '" + (folder / "forged.rawlog").string() + "'");
   EXPECT_EQ(outcome.code, 1) << outcome.out;
   EXPECT_HAS(outcome.out, "forged.rawlog: truncated: the file ends inside an object");
 }
@@ -83,6 +91,23 @@ TEST_F(AllocationLimit, FalseNumbersOfMeasurements) {
   for (int i = 0; i < 41; ++i) bearings.sensedData[i].landmarkID = i;
   for (const std::uint32_t claim : {30'000'000u, 100'000'000u})
     expectRefused(bearings, number(41), number(claim));
+}
+
+TEST_F(AllocationLimit, FalseNumbersOfPointsInAFileBesideTheRawlog) {
+  const TempFolder folder;
+  mrpt::maps::CPointsMapXYZI points;
+  points.resize(41);
+  writeText(folder / "cloud", forged(samples::bytesOf(points), number(41), number(80'000'000)));
+  mrpt::obs::CObservationPointCloud scan;
+  scan.setAsExternalStorage(
+      folder / "cloud",
+      mrpt::obs::CObservationPointCloud::ExternalStorageFormat::MRPT_Serialization);
+  writeText(folder / "scan.rawlog", samples::bytesOf(scan));
+  const Outcome outcome =
+      extract("--config hdl32e.ini --input '" + (folder / "scan.rawlog").string() + "' --output '" +
+              (folder / "poles.rawlog").string() + "'");
+  EXPECT_EQ(outcome.code, 1) << outcome.out;
+  EXPECT_HAS(outcome.out, "cloud: is damaged: it cannot hold as much as it says");
 }
 
 }  // namespace

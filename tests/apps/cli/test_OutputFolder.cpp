@@ -117,6 +117,13 @@ TEST_F(OutputFolderTest, RefusesAFolderWithForeignFiles) {
   EXPECT_TRUE(fs::exists(folder / "out" / "thesis.tex"));
 }
 
+TEST_F(OutputFolderTest, RefusesFilesThatCameMeanwhile) {
+  OutputFolder out = open("out");
+  writeText(folder / "out" / "notes.txt", "by hand");
+  EXPECT_HAS(messageOf([&] { out.commit(); }), "notes.txt");
+  EXPECT_EQ(readText(folder / "out" / "notes.txt"), "by hand");
+}
+
 TEST_F(OutputFolderTest, RefusesForeignFilesInASubfolder) {
   writeText(folder / "out" / "mark", "old");
   writeText(folder / "out" / "scans" / "01.bin", "old");

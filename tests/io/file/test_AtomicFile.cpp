@@ -142,10 +142,34 @@ TEST_F(AtomicFileTest, FilesThatAppearTogetherAreAllOnTheDiskBefore) {
   a.commit();
   b.commit();
   files.commit();
-  EXPECT_EQ(calls.all(),
-            Names({"sync " + temporaries[0], "sync " + temporaries[1], "rename a, locked",
-                   "rename b, locked", "sync " + m_folder.filename().string()}))
+  const std::string sync = "sync " + m_folder.filename().string();
+  EXPECT_EQ(calls.all(), Names({"sync " + temporaries[0], "sync " + temporaries[1],
+                                "rename b, locked", sync, "rename a, locked", sync}))
       << "and no other program renames meanwhile";
+}
+
+TEST_F(AtomicFileTest, FilesThatAppearTogetherNeverStandBesideEarlierOnes) {
+  for (const char* name : {"a", "b"}) write(name, "before");
+  AtomicFile a(path("a")), b(path("b"));
+  io::AtomicFiles files;
+  a.commit();
+  b.commit();
+  fs::remove(path("b"));
+  fs::create_directory(path("b"));  // so that its name cannot be given
+  EXPECT_REFUSED(files.commit(), path("b").string() + ": Is a directory");
+  EXPECT_FALSE(fs::exists(path("a")));
+}
+
+TEST_F(AtomicFileTest, OfFilesThatAppearTogetherTheEarlierSideFilesGoFirst) {
+  for (const char* name : {"a", "b"}) write(name, "before");
+  AtomicFile a(path("a")), b(path("b"));
+  io::AtomicFiles files;
+  a.commit();
+  b.commit();
+  const DiskCalls calls;
+  files.commit();
+  const std::string sync = "sync " + m_folder.filename().string();
+  EXPECT_EQ(calls.all(), Names({sync, "rename b, locked", sync, "rename a, locked", sync}));
 }
 
 TEST_F(AtomicFileTest, ADiskThatFailsIsAnErrorAndChangesNothing) {

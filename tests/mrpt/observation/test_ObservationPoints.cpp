@@ -4,6 +4,7 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationRotatingScan.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
+#include <sys/stat.h>
 
 #include <cstring>
 #include <fstream>
@@ -76,6 +77,22 @@ TEST(ObservationPoints, LoadsAndUnloadsOtherExternalFiles) {
   CObservationPointCloud missing;
   missing.setAsExternalStorage(folder / "1.gz", Format::MRPT_Serialization);
   EXPECT_HAS(refusal(extraction, missing), "1.gz");
+}
+
+// A device may have no end, and a pipe no beginning.
+TEST(ObservationPoints, RefusesExternalFilesThatAreNone) {
+  using Format = CObservationPointCloud::ExternalStorageFormat;
+  const testing_apps::TempFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  ObservationPoleExtractor extraction(hdl32(1.5));
+  for (const Format format : {Format::KittiBinFile, Format::MRPT_Serialization})
+    for (const std::string& file :
+         {std::string("/dev/zero"), (folder / "pipe").string(), folder.path().string()}) {
+      CObservationPointCloud observation;
+      observation.setAsExternalStorage(file, format);
+      EXPECT_HAS(refusal(extraction, observation),
+                 file + ": a scan beside the rawlog must be a regular file");
+    }
 }
 
 const std::string kDatasets = "/usr/share/mrpt/datasets/";

@@ -343,6 +343,17 @@ class Usage(unittest.TestCase):
                            input=json.dumps(WRITTEN).encode())
             self.assertEqual((pathlib.Path(folder) / "results.json").read_text(), files.json_text(SAMPLE) + "\n")
 
+    def test_writes_all_files_or_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            (folder / "results.json").write_text(json.dumps(WRITTEN))
+            (folder / "runs.csv.part").symlink_to(folder / "results.json")  # is not followed
+            (folder / "report.html.part").mkdir()
+            code, said = self.run_script(str(folder))
+            self.assertEqual((code, said.count("\n")), (1, 1))
+            self.assertEqual({one.name for one in folder.iterdir()}, {"results.json", "report.html.part"})
+            self.assertEqual((folder / "results.json").read_text(), json.dumps(WRITTEN))
+
     def test_says_what_is_wrong_in_one_line(self):
         self.assertEqual(self.run_script()[0], 2)
         self.assertEqual(self.run_script("folder", "results.json")[0], 2)

@@ -154,13 +154,25 @@ AtomicFiles::~AtomicFiles() {
 void AtomicFiles::commit() {
   if (m_complete.empty()) return;
   std::set<fs::path> folders;
-  const PathLock turn = PathLock::waitFor(folderOf(m_complete.front().target()));
-  for (TemporaryFile& file : m_complete) {
-    file.rename();
-    folders.insert(folderOf(file.target()));
+  for (const TemporaryFile& file : m_complete) folders.insert(folderOf(file.target()));
+  const auto sync = [&] {
+    for (const fs::path& folder : folders) syncFolder(folder);
+  };
+  const PathLock turn = PathLock::waitFor(*folders.begin());
+  TemporaryFile main = std::move(m_complete.back());
+  m_complete.pop_back();
+  std::error_code error;
+  bool isRemoved = false;
+  for (const TemporaryFile& other : m_complete) {
+    isRemoved |= fs::remove(other.target(), error);
+    if (error) throw cannotWrite(other.target(), error.message());
   }
+  if (isRemoved) sync();
+  main.rename();
+  if (!m_complete.empty()) sync();
+  for (TemporaryFile& other : m_complete) other.rename();
   m_complete.clear();
-  for (const fs::path& folder : folders) syncFolder(folder);
+  sync();
 }
 
 void writeFile(const fs::path& file, std::string_view content) {

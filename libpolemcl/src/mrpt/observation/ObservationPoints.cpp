@@ -13,11 +13,14 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <numeric>
 
 #include <polemcl/io/data/Cloud.h>
 #include "core/common/Statistics.h"
 #include "core/sensor/SensorModel.h"
+#include "io/file/ReadLimits.h"
+#include "mrpt/common/AllocationLimit.h"
 #include "mrpt/common/BoundedRead.h"
 
 namespace polemcl {
@@ -84,6 +87,42 @@ struct StorageFlags : CObservation3DRangeScan {
            storedNumber(scan.*(&StorageFlags::m_points3D_external_stored)) != 0;
   }
 };
+
+/// Bytes of a file beside the rawlog; 0 if it is missing, which the one who reads it reports.
+std::uintmax_t sizeOfExternal(const std::string& file) {
+  std::error_code none;
+  const auto status = std::filesystem::status(file, none);
+  if (!std::filesystem::exists(status)) return 0;
+  if (!std::filesystem::is_regular_file(status))
+    throw Error(file +
+                ": a scan beside the rawlog must be a regular file, no device, pipe or folder");
+  return std::filesystem::file_size(file);
+}
+
+/// Lets MRPT read files beside the rawlog, whose counts may be wrong.
+template <class Load>
+void loadExternal(const std::vector<std::string>& files, const Load& load) {
+  std::uint64_t bytes = 0;
+  for (const std::string& file : files) bytes += sizeOfExternal(file);
+  const AllocationLimit limit(io::mostInflated(bytes));
+  try {
+    load();
+  } catch (const std::exception&) {
+    if (!limit.reached()) throw;
+    throw Error(files.front() + ": is damaged: it cannot hold as much as it says");
+  }
+}
+
+std::vector<std::string> externalFilesOf(const CObservation3DRangeScan& scan) {
+  std::vector<std::string> files;
+  if (scan.points3D_isExternallyStored())
+    files.push_back(scan.points3D_getExternalStorageFileAbsolutePath());
+  if (!scan.rangeImage_isExternallyStored()) return files;
+  files.push_back(scan.rangeImage_getExternalStorageFileAbsolutePath(""));
+  for (const auto& layer : scan.rangeImageOtherLayers)
+    files.push_back(scan.rangeImage_getExternalStorageFileAbsolutePath(layer.first));
+  return files;
+}
 
 /// Microseconds since the full hour. MRPT's gps_timestamp() binds a reference to this misaligned
 /// member, which is undefined.
@@ -167,6 +206,7 @@ PointsView ObservationPoints::readCloud(const CObservationPointCloud& observatio
   if (!observation.pointcloud && observation.isExternallyStored()) {
     const std::string file =
         mrpt::io::lazy_load_absolute_path(observation.getExternalStorageFile());
+    sizeOfExternal(file);
     const auto format = StorageFormat::of(observation);
     if (format == CObservationPointCloud::ExternalStorageFormat::KittiBinFile &&
         !endsIn(file, ".gz")) {
@@ -178,7 +218,7 @@ PointsView ObservationPoints::readCloud(const CObservationPointCloud& observatio
       return owned();
     }
     m_loaded = &observation;
-    observation.load();
+    loadExternal({file}, [&] { observation.load(); });
   }
   if (!observation.pointcloud) return {};
   const auto& points = *observation.pointcloud;
@@ -202,7 +242,7 @@ PointsView ObservationPoints::readVelodyne(const CObservationVelodyneScan& obser
 PointsView ObservationPoints::readDepth(const CObservation3DRangeScan& observation) {
   const bool stored = StorageFlags::areSet(observation);
   std::optional<CObservation3DRangeScan> copy;
-  if (stored) copy.emplace(observation).load();
+  if (stored) loadExternal(externalFilesOf(observation), [&] { copy.emplace(observation).load(); });
   const CObservation3DRangeScan& scan = stored ? *copy : observation;
   if (hasPixels(scan)) {
     m_camera = cameraOf(scan);

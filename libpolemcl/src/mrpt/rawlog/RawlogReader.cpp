@@ -18,8 +18,8 @@
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "io/file/FileKind.h"
 #include "io/file/ReadLimits.h"
+#include "mrpt/common/AllocationLimit.h"
 #include "mrpt/common/MrptReason.h"
-#include "mrpt/rawlog/AllocationLimit.h"
 
 namespace polemcl {
 

@@ -1,4 +1,4 @@
-#include "mrpt/rawlog/AllocationLimit.h"
+#include "mrpt/common/AllocationLimit.h"
 
 namespace polemcl {
 
