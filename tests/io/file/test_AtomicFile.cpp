@@ -144,7 +144,7 @@ TEST_F(AtomicFileTest, FilesThatAppearTogetherAreAllOnTheDiskBefore) {
   files.commit();
   const std::string sync = "sync " + m_folder.filename().string();
   EXPECT_EQ(calls.all(), Names({"sync " + temporaries[0], "sync " + temporaries[1],
-                                "rename b, locked", sync, "rename a, locked", sync}))
+                                "rename a, locked", sync, "rename b, locked", sync}))
       << "and no other program renames meanwhile";
 }
 

@@ -168,11 +168,16 @@ void AtomicFiles::commit() {
     if (error) throw cannotWrite(other.target(), error.message());
   }
   if (isRemoved) sync();
-  main.rename();
-  if (!m_complete.empty()) sync();
+  const bool isNew = !fs::exists(main.target());
+  const auto finishMain = [&] {
+    main.rename();
+    sync();
+  };
+  if (!isNew) finishMain();
   for (TemporaryFile& other : m_complete) other.rename();
+  if (!m_complete.empty()) sync();
   m_complete.clear();
-  sync();
+  if (isNew) finishMain();
 }
 
 void writeFile(const fs::path& file, std::string_view content) {

@@ -81,9 +81,9 @@ class AtomicFile {
 
 /// \brief Files that appear together: while it exists, files that this thread commits keep their
 /// temporary names. commit() gives them their own; otherwise none of them appears. Of two programs
-/// that write the same files at once, all are those of one. Earlier files but the last go first,
-/// then the last one is replaced, then the others come: at no moment do old and new ones stand
-/// together.
+/// that write the same files at once, all are those of one. At no moment do old and new ones stand
+/// together: earlier ones but the last go first. A last one that was there is then replaced before
+/// the others come, a new one appears after them.
 class AtomicFiles {
  public:
   AtomicFiles();
