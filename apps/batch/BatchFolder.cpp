@@ -118,7 +118,7 @@ std::string host() {
 }  // namespace
 
 BatchFolder::BatchFolder(const fs::path& path) : m_path(fs::absolute(path).lexically_normal()) {
-  if (fs::exists(m_path / kMarker)) requireNoLinks(m_path, true);
+  if (fs::exists(m_path / kMarker) || fs::exists(m_path / kLock)) requireNoLinks(m_path, true);
 }
 
 void BatchFolder::take(const std::string& name, bool resume) {

@@ -31,9 +31,7 @@ class OutputFolder {
   /// \brief The folder to fill.
   const std::filesystem::path& temporary() const { return m_temporary; }
   /// \brief Gives the folder its name; an earlier output is removed.
-  /// \throws Error when it cannot be renamed, or somebody else has written there meanwhile; what
-  /// was
-  ///         there stays.
+  /// \throws Error when it cannot be renamed, or others wrote there; what was there stays.
   void commit();
 
  private:

@@ -316,6 +316,10 @@ TEST(BatchFolder, OfSomebodyElseDoesNotLeadOutOfIt) {
     fs::remove(path / name);
   }
   EXPECT_NO_THROW(BatchFolder{path});
+  fs::remove(path / "plan.json");  // cut short
+  fs::remove(path / "batch.ini");
+  fs::create_symlink(folder / "batch.ini", path / "batch.ini");
+  EXPECT_REFUSED(BatchFolder{path}, "batch/batch.ini: is a link");
 }
 
 TEST_F(BatchRunner, SaysWhichBuildDidWhatIsDoneAgain) {

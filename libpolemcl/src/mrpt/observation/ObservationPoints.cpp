@@ -206,7 +206,7 @@ PointsView ObservationPoints::readCloud(const CObservationPointCloud& observatio
   if (!observation.pointcloud && observation.isExternallyStored()) {
     const std::string file =
         mrpt::io::lazy_load_absolute_path(observation.getExternalStorageFile());
-    sizeOfExternal(file);
+    sizeOfExternal(file);  // refuses devices
     const auto format = StorageFormat::of(observation);
     if (format == CObservationPointCloud::ExternalStorageFormat::KittiBinFile &&
         !endsIn(file, ".gz")) {
