@@ -2,7 +2,8 @@
 # Installs what is missing, builds, and runs every test.
 # Usage: tests/run.sh [--quick | --full | STEP...]
 #   --quick   the unit tests only: less than a minute after the build
-#   --full    all steps, whichever fail, then a table of them: takes half a day on 2 cores
+#   --full    all steps, whichever fail, then a table of them; takes half a day on 2 cores. The same command
+#             again goes on with the steps that have not passed at this commit
 #   lint      format, spelling, hard phrases, ends of lines and files
 #   unit      the unit tests
 #   test      all tests, files of earlier releases, the installed programs and examples, a kill of each command
@@ -26,7 +27,7 @@ set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
 
 usage() {
-  sed -n '2,24s/^# //p' "$0"
+  sed -n '2,25s/^# //p' "$0"
   exit "$1"
 }
 
@@ -94,18 +95,22 @@ run_step() {
   esac
 }
 
+# A step that has passed at this commit is not repeated: the command goes on where it was ended.
 full() {
-  status=0 table=
+  status=0
+  commit=$(git -C "$top" describe --always --dirty --exclude '*')
+  table=$top/build/full-$commit.txt
+  mkdir -p "$top/build"
+  case $commit in *-dirty) rm -f "$table" ;; esac
   for step in lint test tidy golden mutation viewers slurm debian site clang sanitize threads valgrind fuzz faults long coverage; do
+    ! grep -qs "^$step *passed" "$table" || continue
     echo "tests/run.sh $step"
     begin=$(date +%s) result=passed
     "$top/tests/run.sh" "$step" || result=FAILED status=1
-    row=$(printf '%-9s %s %4d min' "$step" "$result" $((($(date +%s) - begin) / 60)))
-    table="$table$row
-"
-    echo "$row"
+    printf '%-9s %s %4d min\n' "$step" "$result" $((($(date +%s) - begin) / 60)) | tee -a "$table"
   done
-  printf '\nAll steps:\n%s' "$table"
+  echo "All steps at $commit:"
+  cat "$table"
   exit $status
 }
 
