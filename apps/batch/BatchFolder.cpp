@@ -32,6 +32,7 @@ std::uint32_t checksumOf(const fs::path& file) {
   while (stream.read(block.data(), block.size()) || stream.gcount() > 0)
     crc = ::crc32(crc, reinterpret_cast<const Bytef*>(block.data()),
                   static_cast<uInt>(stream.gcount()));
+  if (!stream.eof() || stream.bad()) throw Error(file.string() + ": cannot be read to its end");
   return static_cast<std::uint32_t>(crc);
 }
 

@@ -188,6 +188,8 @@ ExtractSummary extractPoles(const ExtractOptions& options, const AllSettings& se
   gnss.writeRest();
   io::AtomicFiles together;
   const std::string undrawn = drawing ? tryToDraw(drawn, summary, settings, options) : "";
+  if (!undrawn.empty() && std::filesystem::is_regular_file(*options.png))
+    std::filesystem::remove(*options.png);  // of other poles
   if (csv) csv->commit();
   rawlog.commit();
   together.commit();

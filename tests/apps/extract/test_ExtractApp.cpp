@@ -108,6 +108,7 @@ TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
   EXPECT_EQ(readText(folder / "scan.png").substr(1, 3), "PNG");
   fs::remove(folder / "poles.rawlog");
   expectFailure(draw("2"), {at("in.rawlog"), "no scan 2", "there are 2", "poles are written"});
+  EXPECT_FALSE(fs::exists(folder / "scan.png")) << "of other poles";
   expectFailure(runProgram(extractMain, {"--config", config(), "--input", at("poles.rawlog"),
                                          "--output", at("again.rawlog"), "--png", at("p.png")}),
                 {at("poles.rawlog"), "holds poles"});
