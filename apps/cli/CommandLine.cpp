@@ -23,18 +23,6 @@ namespace {
 
 constexpr double kLargest = 1e6;  // of metres, seconds and the like
 
-/// What broken files bring into messages becomes question marks.
-std::string printable(const std::string& text) {
-  std::string clean;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = io::characterLength(text, at);
-    const bool isControl = (text[at] >= 0 && text[at] < 0x20) || text[at] == 0x7f;
-    clean += length > 0 && !isControl ? text.substr(at, length) : "?";
-    at += std::max<std::size_t>(1, length);
-  }
-  return clean;
-}
-
 /// What `--print-config` asks for; thrown as soon as it is parsed, so that nothing else is
 /// required.
 struct PrintRequest {

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
@@ -60,7 +61,52 @@ bool isLackOfThreads(const std::exception& error) {
          !dynamic_cast<const std::filesystem::filesystem_error*>(&error);
 }
 
+/// Whether a character moves the cursor, starts a command of the terminal, or turns the direction
+/// of the text. \param text One character of UTF-8.
+bool controlsTerminal(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (text.size() == 1)
+    return (byte(0) < 0x20 && byte(0) != '\n' && byte(0) != '\t') || byte(0) == 0x7f;
+  if (text.size() == 2) return byte(0) == 0xC2 && byte(1) < 0xA0;  // U+0080 to U+009F
+  if (text.size() != 3 || byte(0) != 0xE2) return false;
+  const int last = (byte(1) & 0x3F) << 6 | (byte(2) & 0x3F);  // of U+2xxx
+  return last == 0x0E || last == 0x0F || (last >= 0x28 && last <= 0x2E) ||
+         (last >= 0x66 && last <= 0x69);
+}
+
 }  // namespace
+
+std::string printable(std::string_view text) {
+  std::string clean;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = io::characterLength(text, at);
+    const bool isGood = length > 0 && !controlsTerminal(text.substr(at, length));
+    clean += isGood ? text.substr(at, length) : "?";
+    at += std::max<std::size_t>(1, length);
+  }
+  return clean;
+}
+
+PrintableOutput::PrintableOutput(std::ostream& stream)
+    : m_stream(stream), m_target(stream.rdbuf(this)) {}
+
+PrintableOutput::~PrintableOutput() {
+  sync();
+  m_stream.rdbuf(m_target);
+}
+
+int PrintableOutput::overflow(int next) {
+  if (next == traits_type::eof()) return 0;
+  m_text += static_cast<char>(next);
+  return next == '\n' && sync() < 0 ? traits_type::eof() : next;
+}
+
+int PrintableOutput::sync() {
+  const std::string clean = printable(m_text);
+  m_text.clear();
+  const auto size = static_cast<std::streamsize>(clean.size());
+  return m_target->sputn(clean.data(), size) == size ? m_target->pubsync() : -1;
+}
 
 bool errorsAreOnTerminal() {
   return ::isatty(STDERR_FILENO) == 1;
@@ -74,7 +120,7 @@ std::string coloured(Colour colour, const std::string& text) {
 }
 
 std::string warningLine(const std::string& program, const std::string& text) {
-  return program + ": " + coloured(Colour::yellow, "warning:") + " " + text;
+  return program + ": " + coloured(Colour::yellow, "warning:") + " " + printable(text);
 }
 
 void setVerbose(const std::string& program, bool verbose) {
@@ -83,7 +129,7 @@ void setVerbose(const std::string& program, bool verbose) {
 
 void sayDetail(const std::string& text) {
   if (s_verboseProgram.empty()) return;
-  std::cerr << s_verboseProgram + ": " + text + '\n' << std::flush;
+  std::cerr << s_verboseProgram + ": " + printable(text) + '\n' << std::flush;
 }
 
 std::string resourcesTaken(double seconds) {

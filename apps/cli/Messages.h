@@ -4,9 +4,34 @@
 /// with `--verbose`; how one that failed says why.
 
 #include <exception>
+#include <ostream>
+#include <streambuf>
 #include <string>
+#include <string_view>
 
 namespace polemcl::apps {
+
+/// \brief A text with question marks for what is no UTF-8, controls a terminal, or turns the
+/// direction of text (files and sensors bring it along). Ends of lines and tabs stay.
+std::string printable(std::string_view text);
+
+/// \brief While it lives, a stream writes printable() text.
+class PrintableOutput : public std::streambuf {
+ public:
+  explicit PrintableOutput(std::ostream& stream);
+  ~PrintableOutput() override;
+  PrintableOutput(const PrintableOutput&) = delete;
+  PrintableOutput& operator=(const PrintableOutput&) = delete;
+
+ protected:
+  int overflow(int next) override;
+  int sync() override;
+
+ private:
+  std::ostream& m_stream;
+  std::streambuf* m_target;
+  std::string m_text;  ///< not written yet
+};
 
 /// \brief True when standard error is a terminal.
 bool errorsAreOnTerminal();

@@ -67,6 +67,7 @@ class OsmReader {
       : m_file(file), m_parser(XML_ParserCreate(nullptr)) {
     XML_SetUserData(m_parser, this);
     XML_SetElementHandler(m_parser, &OsmReader::begins, &OsmReader::ends);
+    XML_SetEntityDeclHandler(m_parser, &OsmReader::declaresEntity);
   }
   ~OsmReader() { XML_ParserFree(m_parser); }
   OsmReader(const OsmReader&) = delete;
@@ -94,6 +95,13 @@ class OsmReader {
     static_cast<OsmReader*>(self)->begin(name, attributes);
   }
   static void ends(void* self, const char* name) { static_cast<OsmReader*>(self)->end(name); }
+
+  /// Entities of a few lines can unfold to gigabytes.
+  static void declaresEntity(void* self, const char* name, int, const char*, int, const char*,
+                             const char*, const char*, const char*) {
+    static_cast<OsmReader*>(self)->fail("declares the entity " + std::string(name) +
+                                        "; in OSM XML there are none");
+  }
 
   /// Exceptions must not pass the parser: it stops, and read() throws.
   void fail(const std::string& what) {

@@ -2,9 +2,11 @@
 /// \brief All programs are one file: the name by which it is called tells which one runs.
 
 #include <fcntl.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "batch/BatchApp.h"
 #include "cli/Messages.h"
@@ -37,6 +39,8 @@ int main(int argc, char** argv) {
                   {"pole-eval", evalMain},     {"pole-simulate", simulateMain},
                   {"pole-batch", batchMain},   {"pole-labels", labelsMain}};
   endUncaughtInOneLine(argv[0]);
+  std::optional<PrintableOutput> forTerminal;
+  if (::isatty(STDOUT_FILENO) == 1) forTerminal.emplace(std::cout);
   const auto name = std::filesystem::path(argv[0]).filename();
   for (const auto& program : programs)
     if (name == program.name) return program.main(argc, argv);

@@ -8,6 +8,7 @@
 
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
+#include "core/common/DetectionCheck.h"
 #include "core/common/PoleIndex.h"
 #include "core/mapping/LandmarkFusion.h"
 #include "python/Arrays.h"
@@ -86,6 +87,7 @@ class Builder {
     MappingScan scan;
     scan.pose_map_robot = poseFrom(pose, "pose");
     scan.poles_robot = detectionsFrom(poles);
+    keepMostConfident(scan.poles_robot);
     scan.drive = drive;
     if (!velocity.is_none()) deskew(scan.poles_robot, velocityFrom(velocity));
     alone(m_mutex, [&] {

@@ -401,11 +401,28 @@ TEST(Config, SavesAFile) {
   std::filesystem::remove(path);
 }
 
-/// MRPT expands $eval{} once more in what its first pass, which ends at a zero byte, did not see.
-TEST(Config, RefusesABrokenExpressionBehindAZeroByte) {
-  const std::string text = std::string("[scan_timing]\nturn") + '\0' + "a = 1" + '\0' + "t$eval{x";
-  const std::string message = messageOf([&] { ConfigFile::fromText(text, "t.ini"); });
-  EXPECT_EQ(message.rfind("t.ini: ", 0), 0u) << message;
+/// MRPT would run them: a loop without end, or what the environment holds in a report.
+TEST(Config, RefusesProgramsAndTheEnvironment) {
+  for (const char* value : {"$eval{ var x:=0; repeat x+=1; until(x<0) }", "$env{HOME}",
+                            "a$$env{HOME}", "$e\\\nnv{HOME}", "$\\\nenv{HOME}"}) {
+    const std::string text = std::string("[sample]\ncount = ") + value + "\n";
+    EXPECT_REFUSED(ConfigFile::fromText(text, "t.ini"), "t.ini:2: $",
+                   "neither $eval{} nor $env{} is allowed");
+  }
+  // MRPT expands once more what its first pass, which ends at a zero byte, did not see.
+  const std::string zero = std::string("[scan_timing]\nturn") + '\0' + "a = 1" + '\0' + "t$eval{x";
+  EXPECT_REFUSED(ConfigFile::fromText(zero, "t.ini"), "t.ini:2: $e");
+  EXPECT_NO_THROW(ConfigFile::fromText("[a]\ntitle = 5 $ or $10\n", "t.ini"));
+}
+
+TEST(Config, RefusesDefinesThatGrow) {
+  EXPECT_REFUSED(ConfigFile::fromText("@define A 1\n@define B ${A}${A}\n[a]\nb = ${B}\n", "t.ini"),
+                 "t.ini:2: @define may not use another");
+  EXPECT_REFUSED(ConfigFile::fromText("@define A @define B 1\n[a]\nb = ${A}\n", "t.ini"),
+                 "@define stands for another");
+  std::string text = "@define A " + std::string(50000, 'x') + "\n[a]\n";
+  for (int i = 0; i < 1000; ++i) text += "b" + std::to_string(i) + " = ${A}\n";
+  EXPECT_REFUSED(ConfigFile::fromText(text, "t.ini"), "what @define stands for is too long");
 }
 
 TEST(Range, SaysWhatItAllows) {

@@ -193,6 +193,7 @@ class TestBag {
     std::filesystem::create_directories(file.parent_path());
     std::filesystem::remove(file);
     if (sqlite3_open(file.c_str(), &m_database) != SQLITE_OK) throw std::runtime_error("sqlite");
+    run("PRAGMA synchronous = OFF");
     run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
         "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)");
     run("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, "

@@ -2,10 +2,11 @@
 /// \file Config.h
 /// \brief Strict INI files: the reader and the writer for the `bind` functions of option structs.
 ///
-/// Grammar: as in MRPT's `CConfigFileMemory` (`[section]`, `key = value`, `@define`, `$env{}`);
-/// names are not case sensitive. `#`, `;` and `//` start a comment at the start of a line or after
-/// a blank. Cases that MRPT ignores silently are an Error here: unknown sections and keys, repeated
-/// keys and sections, other lines, values of the wrong type or out of range.
+/// Grammar: as in MRPT's `CConfigFileMemory` (`[section]`, `key = value`, `@define`), but without
+/// `$eval{}`, which is a program, and `$env{}`, which reads what is no part of the file; names are
+/// not case sensitive. `#`, `;` and `//` start a comment at the start of a line or after a blank.
+/// Cases that MRPT ignores silently are an Error here: unknown sections and keys, repeated keys and
+/// sections, other lines, values of the wrong type or out of range.
 
 #include <mrpt/config/CConfigFileBase.h>
 
@@ -21,6 +22,11 @@
 #include "core/common/Binder.h"
 
 namespace polemcl {
+
+/// \brief Refuses what MRPT's parser of INI files would run as a program or read from the
+/// environment, and texts that `@define` makes very long.
+/// \param name Name of the file in messages. \throws Error with the line.
+void requirePlain(const std::string& text, const std::string& name);
 
 /// \brief An INI file in memory, checked for what MRPT's parser passes over in silence.
 class POLEMCL_EXPORT ConfigFile {

@@ -35,6 +35,33 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+TEST(Messages, WhatControlsATerminalBecomesQuestionMarks) {
+  EXPECT_EQ(printable("a\033[31m\r\x7f\xc2\x9b b\u202e\u2066\u200f c"), "a?[31m??? b??? c");
+  EXPECT_EQ(printable("ü – \u2030 \xff\tx\n"), "ü – \u2030 ?\tx\n");
+  std::ostringstream text;
+  {
+    std::ostream out(text.rdbuf());
+    const PrintableOutput clean(out);
+    out << "a\xc2"
+        << "\x9b" << 7 << "\xc3"
+        << "\xbc\n"
+        << "end\033";
+    EXPECT_EQ(text.str(), "a?7ü\n");
+  }
+  EXPECT_EQ(text.str(), "a?7ü\nend?");
+}
+
+TEST(Messages, TextOfAFileDoesNotControlATerminal) {
+  if (!terminalsExist()) GTEST_SKIP() << "no pseudo terminal: is /dev/pts mounted?";
+  const TempFolder folder;
+  writeText(folder / "e.csv", "lon,lat,kind\n8,50,\033]0;x\n8.0001,50,lamp\n");
+  const Outcome shown =
+      onTerminal(bin + "/pole-map import --input " + (folder / "e.csv").string() + " --output " +
+                 (folder / "o.polemap").string() + " --keep kind=lamp --keep kind=tree");
+  EXPECT_TRUE(has(shown.out + shown.err, "?]0;x")) << shown.out << shown.err;
+  EXPECT_FALSE(has(shown.out + shown.err, "\033]0;x"));
+}
+
 TEST(Messages, ErrorsAreRedOnATerminalOnly) {
   if (!terminalsExist()) GTEST_SKIP() << "no pseudo terminal: is /dev/pts mounted?";
   const Outcome shown = onTerminal("env -u NO_COLOR TERM=xterm " + failing);

@@ -157,6 +157,10 @@ TEST_F(MapImportApp, BadInventoriesAreRefusedWithTheirPlace) {
              "a.osm:2: a node needs id, lon and lat");
   EXPECT_HAS(failure("a.osm", "<osm><way><nd ref='1'/><tag k='type' v='pole'/></way></osm>"),
              "has no node of this file");
+  EXPECT_HAS(failure("a.osm",
+                     "<!DOCTYPE osm [<!ENTITY a 'aaaa'>\n<!ENTITY b '&a;&a;'>]>\n<osm>"
+                     "<node id='1' lat='1' lon='1'><tag k='&b;' v=''/></node></osm>"),
+             "a.osm:1: declares the entity a; in OSM XML there are none");
   EXPECT_HAS(failure("a.json", "{}"), "is no GeoJSON FeatureCollection");
   EXPECT_HAS(failure("a.json", R"({"type":"FeatureCollection","features":[{"type":"Feature",
              "geometry":{"type":"MultiPoint","coordinates":[[8,50],[8,51]]}}]})"),

@@ -20,6 +20,13 @@ class BagTest : public FolderTest {
     for (const std::string& message : messages) bag.add(topic, ++time, message);
     bag.add(other, 1, "other");
   }
+  void makeDatabase(const std::string& name, const std::string& sql) const {
+    sqlite3* database = nullptr;
+    sqlite3_open(path(name).c_str(), &database);
+    ASSERT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+        << sqlite3_errmsg(database);
+    sqlite3_close(database);
+  }
   static std::vector<std::string> contents(const Bag& bag, std::size_t topic) {
     std::vector<std::string> result;
     for (const auto& message : bag.messages(topic)) result.push_back(bag.read(message));
@@ -179,6 +186,65 @@ TEST_F(BagTest, LeavesTopicsInOtherFormatsOut) {
   EXPECT_EQ(contents(bag, 0), std::vector<std::string>{"first"});
   ASSERT_EQ(bag.notes().size(), 1u);
   expectIn(bag.notes()[0], "topics in other formats than cdr are left out: /state (json)");
+}
+
+/// What a file of a few kilobytes may ask of SQLite: queries without end, and gigabytes.
+TEST_F(BagTest, ViewsAndComputedColumnsAreNotRun) {
+  const std::string topics =
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format "
+      "TEXT); INSERT INTO topics VALUES(1, '/points', 'T', 'cdr');";
+  const std::string columns = " AS id, 1 AS topic_id, 1 AS timestamp, x'00' AS data FROM n";
+  makeDatabase("view.db3", topics +
+                               "CREATE VIEW messages AS WITH RECURSIVE n(i) AS (SELECT 1 "
+                               "UNION ALL SELECT i + 1 FROM n) SELECT i" +
+                               columns);
+  EXPECT_REFUSED(Bag(path("view.db3")), "view.db3", "messages must be a table, no view");
+  makeDatabase("virtual.db3", topics +
+                                  "CREATE VIRTUAL TABLE messages USING rtree(id, topic_id, "
+                                  "timestamp)");
+  EXPECT_REFUSED(Bag(path("virtual.db3")), "messages must be a table, no virtual");
+  makeDatabase("column.db3",
+               "CREATE TABLE topics(id INTEGER PRIMARY KEY, type TEXT, serialization_format TEXT, "
+               "name TEXT AS (hex(zeroblob(400000000)))); "
+               "INSERT INTO topics VALUES(1, 'T', 'cdr'); "
+               "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data)");
+  EXPECT_REFUSED(Bag(path("column.db3")), "column.db3", "too big");
+}
+
+/// Pages of a table that lead to the same next page from each of their entries.
+TEST_F(BagTest, PagesThatAreVisitedWithoutEndAreRefused) {
+  {
+    TestBag bag(path("a.db3"));
+    const int topic = bag.topic("/points", "T");
+    for (int i = 0; i < 2000; ++i) bag.add(topic, i, std::string(100, 'x'));
+  }
+  std::string bytes = read(path("a.db3"));
+  const auto number = [&](std::size_t at, int size) {
+    std::size_t value = 0;
+    for (int i = 0; i < size; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+  };
+  const auto setNumber = [&](std::size_t at, std::size_t value) {
+    for (int i = 0; i < 4; ++i) bytes[at + i] = static_cast<char>(value >> (24 - 8 * i));
+  };
+  const std::size_t size = number(16, 2), pages = bytes.size() / size;
+  std::size_t root = 0;
+  for (std::size_t page = 1; page < pages; ++page)
+    if (bytes[page * size] == 5 && number(page * size + 3, 2) > 20) root = page * size;
+  ASSERT_GT(root, 0u) << "no table with pages below it";
+  constexpr std::size_t kLevels = 8;
+  for (std::size_t level = 0; level < kLevels; ++level) {
+    const std::size_t at = bytes.size(), next = pages + level + 2;
+    bytes += bytes.substr(root, size);
+    if (level + 1 == kLevels) continue;
+    setNumber(at + 8, next);
+    for (std::size_t i = 0; i < number(at + 3, 2); ++i)
+      setNumber(at + number(at + 12 + 2 * i, 2), next);
+  }
+  bytes.replace(root, size, bytes, pages * size, size);
+  setNumber(28, pages + kLevels);
+  write("b.db3", bytes);
+  EXPECT_REFUSED(Bag(path("b.db3")), "b.db3: damaged: it has more rows than");
 }
 
 TEST_F(BagTest, RefusesADamagedFile) {

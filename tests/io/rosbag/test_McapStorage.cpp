@@ -134,13 +134,15 @@ TEST_F(McapTest, RefusesAnIndexThatPointsElsewhere) {
 }
 
 TEST_F(McapTest, StopsDecompressingWhereTheClaimEnds) {
-  const std::string zeros(50000000, '\0');
+  const std::string zeros(10000000, '\0');
   for (const char* compression : {"lz4", "zstd"}) {
     const std::string bomb = mcapCompressed(zeros, compression);
     expectIn(refusalOf(mcapFile(mcapRawChunk(bomb, compression, 1000, 0))),
              "it decompresses to more than 1000 bytes");
     expectIn(refusalOf(mcapFile(mcapRawChunk(bomb, compression, std::uint64_t{1} << 40, 0))),
-             "up to 1073741824 are allowed");
+             "are allowed");
+    expectIn(refusalOf(mcapFile(mcapRawChunk(bomb, compression, 1 << 26, 0))),
+             "67108864 bytes; up to " + std::to_string((16 << 20) + 50 * bomb.size()));
     expectIn(refusalOf(mcapFile(
                  mcapRawChunk(bomb.substr(0, bomb.size() / 2), compression, zeros.size(), 0))),
              "it cannot be decompressed");
@@ -149,6 +151,19 @@ TEST_F(McapTest, StopsDecompressingWhereTheClaimEnds) {
              "bytes instead of");
   }
   expectIn(refusalOf(mcapFile(mcapRawChunk("x", "brotli", 1, 0))), "compressed with brotli; lz4");
+}
+
+TEST_F(McapTest, RefusesMoreThanAFileOfItsSizeCanHold) {
+  expectIn(refusalOf(mcapFile(mcapChunk(first) + mcapIndex(7, {{10, 0}, {20, 0}}), about)),
+           "its index names a message twice");
+  std::string records = about;
+  while (records.size() < 9000000) records += first;
+  const std::string chunk =
+      mcapRawChunk(mcapCompressed(records, "zstd"), "zstd", records.size(), 0);
+  expectIn(refusalOf(mcapFile(chunk + chunk + chunk)), "the chunks hold more than a file of");
+  std::string channels = mcapSchema(1, "T");
+  for (std::uint16_t i = 0; i < 10001; ++i) channels += mcapChannel(i, 1, "/" + std::to_string(i));
+  expectIn(refusalOf(mcapFile(channels)), "10001 topics; up to 10000 are allowed");
 }
 
 TEST_F(McapTest, RefusesOtherFormatsAndSchemas) {

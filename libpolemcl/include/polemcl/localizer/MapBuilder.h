@@ -38,7 +38,7 @@ class POLEMCL_EXPORT MapBuilder {
   /// `[sensor]`.
   void add(double time, const PointsView& points, const Pose2D& pose_map_robot);
   /// \brief The same from an observation of MRPT with its time stamp and sensor pose, as
-  /// Localizer::step() takes them.
+  /// Localizer::step() takes them. Of more than 200 poles, the most confident are used.
   void add(const mrpt::obs::CObservation& scan, const Pose2D& pose_map_robot);
 
   /// \brief The poles of the map so far, map frame, sorted by x then y; empty: none was seen often

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "core/common/Covariance.h"
 #include "core/common/PoleIndex.h"
@@ -18,6 +20,24 @@ const char* faultOf(const PoleDetection& pole) {
   if (!isCovariance(pole.covariance))
     return "a covariance that is not symmetric positive semidefinite";
   return nullptr;
+}
+
+void keepMostConfident(std::vector<PoleDetection>& poles) {
+  if (poles.size() <= mostDetections) return;
+  std::vector<std::size_t> order(poles.size());
+  std::iota(order.begin(), order.end(), 0);
+  // An invalid confidence comes first: faultOf() shall see it.
+  const auto rank = [&](std::size_t i) {
+    return std::isfinite(poles[i].confidence) ? poles[i].confidence : INFINITY;
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
+  order.resize(mostDetections);
+  std::sort(order.begin(), order.end());
+  std::vector<PoleDetection> kept;
+  kept.reserve(order.size());
+  for (const std::size_t i : order) kept.push_back(poles[i]);
+  poles = std::move(kept);
 }
 
 }  // namespace polemcl

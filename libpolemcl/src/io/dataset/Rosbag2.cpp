@@ -68,7 +68,7 @@ FrameTree readFrames(const Bag& bag, std::vector<std::string>& notes) {
     const bool isStatic =
         topic.name.size() >= kEnding.size() &&
         topic.name.compare(topic.name.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
-    if (topic.type != kTransformsType || !isStatic) continue;
+    if (topic.type != kTransformsType || !isStatic || topic.messages == 0) continue;
     for (const BagMessage& message : bag.messages(i))
       for (const auto& link : decodeTransforms(bag.read(message), bag.place(message))) {
         if (link.T_parent_child)

@@ -176,10 +176,11 @@ void FrameTree::add(const std::string& parent, const std::string& child,
 }
 
 std::map<std::string, Eigen::Isometry3d> FrameTree::above(const std::string& frame) const {
+  constexpr std::size_t kMostLinks = 1000;  // robots have some ten
   std::map<std::string, Eigen::Isometry3d> poses;
   std::string at = frame;
   Eigen::Isometry3d T_at_frame = Eigen::Isometry3d::Identity();
-  while (poses.emplace(at, T_at_frame).second) {  // ends in a circle, too
+  while (poses.size() < kMostLinks && poses.emplace(at, T_at_frame).second) {  // ends in a circle
     const auto link = m_links.find(at);
     if (link == m_links.end()) break;
     T_at_frame = link->second.T_parent_child * T_at_frame;

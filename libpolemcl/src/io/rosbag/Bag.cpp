@@ -162,6 +162,13 @@ BagFiles filesOfBag(const fs::path& folder) {
 
 }  // namespace
 
+void requireFewTopics(std::size_t topics, const std::string& where) {
+  constexpr std::size_t kMostTopics = 10000;
+  if (topics > kMostTopics)
+    throw Error(where + std::to_string(topics) + " topics; up to " + std::to_string(kMostTopics) +
+                " are allowed");
+}
+
 BagFiles bagFiles(const fs::path& bag) {
   if (!fs::exists(bag)) throw Error(bag.string() + ": there is no such bag");
   BagFiles result = fs::is_directory(bag) ? filesOfBag(bag) : BagFiles{{fs::absolute(bag)}, false};
@@ -188,7 +195,9 @@ void Bag::open(const fs::path& path) {
   m_files.push_back(
       {path, path.extension() == ".mcap" ? openMcapStorage(path) : openSqliteStorage(path), {}});
   File& file = m_files.back();
-  for (const StoredTopic& topic : file.storage->topics()) addTopic(file, topic);
+  const std::vector<StoredTopic> topics = file.storage->topics();
+  requireFewTopics(topics.size(), path.string() + ": ");
+  for (const StoredTopic& topic : topics) addTopic(file, topic);
 }
 
 void Bag::addTopic(File& file, const StoredTopic& topic) {
@@ -253,8 +262,8 @@ std::string Bag::read(const BagMessage& message, std::size_t most) const {
   const BagStorage& storage = *m_files[message.file].storage;
   const std::string where = place(message);
   if (!m_compressed) return storage.read(message.id, most, where);
-  std::string bytes =
-      decompressedZstd(storage.read(message.id, SIZE_MAX, where), kMostInBag, where);
+  const std::string compressed = storage.read(message.id, SIZE_MAX, where);
+  std::string bytes = decompressedZstd(compressed, mostInBag(compressed.size()), where);
   if (bytes.size() > most) bytes.resize(most);
   return bytes;
 }

@@ -2,11 +2,14 @@
 /// \file BagStorage.h
 /// \brief What a bag of ROS 2 asks of one of its files, whatever its format.
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "io/file/ReadLimits.h"
 
 namespace polemcl::io {
 
@@ -47,7 +50,13 @@ std::unique_ptr<BagStorage> openSqliteStorage(const std::filesystem::path& file)
 /// \throws Error when it is damaged.
 std::unique_ptr<BagStorage> openMcapStorage(const std::filesystem::path& file);
 
-/// \brief Limit of a decompressed chunk or message, bytes.
-constexpr std::uint64_t kMostInBag = 1 << 30;
+/// \brief Refuses a file with more than 10,000 topics, which takes long to be listed.
+/// \param where Prefix of the error.
+void requireFewTopics(std::size_t topics, const std::string& where);
+
+/// \brief Limit of a chunk or message after decompression. \param compressed Its bytes in the bag.
+constexpr std::uint64_t mostInBag(std::uint64_t compressed) {
+  return std::min(std::uint64_t{1} << 30, mostInflated(compressed));
+}
 
 }  // namespace polemcl::io

@@ -55,6 +55,8 @@ class McapFile {
   std::string read(const McapRecord& record, std::uint64_t most = UINT64_MAX) const;
   /// \brief Bytes of the file. \throws Error when it is shorter.
   std::string read(std::uint64_t offset, std::uint64_t size) const;
+  /// \brief Bytes of the file up to the end of its records.
+  std::uint64_t size() const { return m_end; }
   /// \brief "FILE: ", the prefix of an error.
   const std::string& where() const { return m_where; }
 

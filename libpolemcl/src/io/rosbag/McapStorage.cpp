@@ -73,6 +73,7 @@ class McapStorage : public BagStorage {
   std::vector<McapChunk> m_chunks;
   std::vector<std::vector<McapMessage>> m_inChunks;  ///< for each chunk
   std::vector<McapMessage> m_messages;               ///< the id of a message is its number, from 1
+  std::uint64_t m_scanned = 0;  ///< bytes of chunks that were decompressed to find their messages
   std::vector<StoredTopic> m_topics;
   std::map<std::uint16_t, std::int64_t> m_topicOf;  ///< id of the topic of a channel
   mutable std::size_t m_open = kNoChunk;            ///< chunk that was decompressed last
@@ -175,6 +176,11 @@ void McapStorage::completeIndex() {
     if (needsScan(i)) scanChunk(i);
     std::sort(messages.begin(), messages.end(),
               [](const McapMessage& a, const McapMessage& b) { return a.offset < b.offset; });
+    const auto twice = std::adjacent_find(
+        messages.begin(), messages.end(),
+        [](const McapMessage& a, const McapMessage& b) { return a.offset == b.offset; });
+    if (twice != messages.end())
+      throw Error(placeOf(m_chunks[i].record) + "damaged: its index names a message twice");
     m_messages.insert(m_messages.end(), messages.begin(), messages.end());
   }
   m_inChunks.clear();
@@ -198,6 +204,10 @@ void McapStorage::scanChunk(std::size_t chunk) {
   m_inChunks[chunk].clear();
   const std::string& records = content(chunk);
   const std::string where = placeOf(m_chunks[chunk].record);
+  m_scanned += records.size();
+  if (m_scanned > mostInflated(m_file.size()))
+    throw Error(where + "damaged: up to here the chunks hold more than a file of " +
+                std::to_string(m_file.size()) + " bytes can");
   for (std::uint64_t offset = 0; offset < records.size();) {
     const McapRecord record = mcapRecordAt(records, offset, where);
     const std::string_view bytes = std::string_view(records).substr(record.begin, record.size);
@@ -211,6 +221,7 @@ void McapStorage::scanChunk(std::size_t chunk) {
 
 /// Several channels may have one topic.
 void McapStorage::listTopics() {
+  requireFewTopics(m_channels.size(), m_file.where());
   for (const auto& [id, channel] : m_channels) {
     const McapSchema& schema = m_schemas[channel.schema];  // none: empty
     std::string format = channel.format;
@@ -290,8 +301,8 @@ std::string McapStorage::decompress(std::size_t chunk) const {
   const auto checksum = reader.get<std::uint32_t>();
   const std::string_view compression = reader.getText();
   const std::string_view data = reader.getRaw(reader.get<std::uint64_t>());
-  if (size > kMostInBag)
-    throw Error(where + std::to_string(size) + " bytes; up to " + std::to_string(kMostInBag) +
+  if (const std::uint64_t most = mostInBag(data.size()); size > most)
+    throw Error(where + std::to_string(size) + " bytes; up to " + std::to_string(most) +
                 " are allowed");
   std::string records;
   if (data.empty() || compression.empty())

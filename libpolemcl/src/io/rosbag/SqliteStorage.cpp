@@ -1,6 +1,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <climits>
 #include <functional>
 
 #include <polemcl/core/common/Types.h>
@@ -48,20 +49,6 @@ Database openDatabase(const fs::path& file) {
   return database;
 }
 
-/// Calls `visit` for each row of a query, with `topic` in the place of its parameter, if it has
-/// one.
-void forEachRow(const fs::path& file, sqlite3* database, const std::string& sql, std::int64_t topic,
-                const std::function<void(sqlite3_stmt*)>& visit) {
-  sqlite3_stmt* handle = nullptr;
-  if (sqlite3_prepare_v2(database, sql.c_str(), -1, &handle, nullptr) != SQLITE_OK)
-    failIn(file, database);
-  const std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> statement(handle, &sqlite3_finalize);
-  if (sqlite3_bind_parameter_count(handle) > 0) sqlite3_bind_int64(handle, 1, topic);
-  int status = SQLITE_ROW;
-  while ((status = sqlite3_step(handle)) == SQLITE_ROW) visit(handle);
-  if (status != SQLITE_DONE) failIn(file, database);
-}
-
 std::string columnText(sqlite3_stmt* row, int column) {
   const auto* const begin = sqlite3_column_text(row, column);
   return begin ? std::string(reinterpret_cast<const char*>(begin),
@@ -69,12 +56,68 @@ std::string columnText(sqlite3_stmt* row, int column) {
                : std::string();
 }
 
+/// While it lives, a query may take 100 steps for each byte of the file, and a million. A row has
+/// at least six bytes and takes some 20 steps; more are needed where pages lead in circles.
+class StepLimit {
+ public:
+  StepLimit(sqlite3* database, std::uintmax_t bytes)
+      : m_database(database), m_left((1000000 + 100 * static_cast<std::int64_t>(bytes)) / kEvery) {
+    const auto count = [](void* left) { return --*static_cast<std::int64_t*>(left) < 0 ? 1 : 0; };
+    sqlite3_progress_handler(database, kEvery, count, &m_left);
+  }
+  ~StepLimit() { sqlite3_progress_handler(m_database, 0, nullptr, nullptr); }
+  StepLimit(const StepLimit&) = delete;
+  StepLimit& operator=(const StepLimit&) = delete;
+
+ private:
+  static constexpr int kEvery = 1000;
+  sqlite3* m_database;
+  std::int64_t m_left;  ///< thousands
+};
+
+/// Calls `visit` for each row of a query, with `topic` in the place of its parameter, if it has
+/// one. \param bytes Size of the file.
+void forEachRow(const fs::path& file, sqlite3* database, std::uintmax_t bytes,
+                const std::string& sql, std::int64_t topic,
+                const std::function<void(sqlite3_stmt*)>& visit) {
+  const StepLimit limit(database, bytes);
+  sqlite3_stmt* handle = nullptr;
+  if (sqlite3_prepare_v2(database, sql.c_str(), -1, &handle, nullptr) != SQLITE_OK)
+    failIn(file, database);
+  const std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> statement(handle, &sqlite3_finalize);
+  if (sqlite3_bind_parameter_count(handle) > 0) sqlite3_bind_int64(handle, 1, topic);
+  int status = SQLITE_ROW;
+  while ((status = sqlite3_step(handle)) == SQLITE_ROW) visit(handle);
+  if (status == SQLITE_INTERRUPT)
+    throw Error(file.string() + ": damaged: it has more rows than " + std::to_string(bytes) +
+                " bytes can hold");
+  if (status != SQLITE_DONE) failIn(file, database);
+}
+
+/// Nothing in the file may run longer or take more memory than its size allows: a view may be
+/// an endless query, a column a call of a function.
+void requirePlainTables(const fs::path& file, sqlite3* database, std::uintmax_t bytes) {
+  constexpr std::uintmax_t kRoomForQueries = 4096;
+  sqlite3_limit(database, SQLITE_LIMIT_LENGTH,
+                static_cast<int>(std::min<std::uintmax_t>(bytes + kRoomForQueries, INT_MAX)));
+  sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  forEachRow(file, database, bytes,
+             "SELECT name, type FROM pragma_table_list WHERE schema = 'main' AND type <> 'table' "
+             "AND lower(name) IN ('topics', 'messages')",
+             0, [&](sqlite3_stmt* row) {
+               throw Error(file.string() + ": cannot be read as a ROS 2 bag: " +
+                           columnText(row, 0) + " must be a table, no " + columnText(row, 1));
+             });
+}
+
 class SqliteStorage : public BagStorage {
  public:
   explicit SqliteStorage(const fs::path& file)
       : m_file(file),
         m_bytes(fs::file_size(file) + unmergedBytes(file)),
-        m_database(openDatabase(file)) {}
+        m_database(openDatabase(file)) {
+    requirePlainTables(file, m_database.get(), m_bytes);
+  }
   std::vector<StoredTopic> topics() const override;
   std::vector<std::int64_t> messages(std::int64_t topic) const override;
   std::string read(std::int64_t message, std::size_t most, const std::string& where) const override;
@@ -89,7 +132,7 @@ std::vector<StoredTopic> SqliteStorage::topics() const {
   std::vector<StoredTopic> result;
   // The table `topics` may name topics without messages.
   forEachRow(
-      m_file, m_database.get(),
+      m_file, m_database.get(), m_bytes,
       "SELECT id, name, type, serialization_format, coalesce(number, 0) FROM topics LEFT JOIN "
       "(SELECT topic_id, count(*) AS number FROM messages GROUP BY topic_id) ON topic_id = id",
       0, [&](sqlite3_stmt* row) {
@@ -102,7 +145,7 @@ std::vector<StoredTopic> SqliteStorage::topics() const {
 
 std::vector<std::int64_t> SqliteStorage::messages(std::int64_t topic) const {
   std::vector<std::int64_t> result;
-  forEachRow(m_file, m_database.get(),
+  forEachRow(m_file, m_database.get(), m_bytes,
              "SELECT id FROM messages WHERE topic_id = ? ORDER BY timestamp, id", topic,
              [&](sqlite3_stmt* row) { result.push_back(sqlite3_column_int64(row, 0)); });
   return result;

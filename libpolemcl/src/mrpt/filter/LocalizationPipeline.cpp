@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <sstream>
 #include <utility>
 
 #include "core/common/Binder.h"
+#include "core/common/DetectionCheck.h"
 #include "core/common/PoleIndex.h"
 #include "core/common/Statistics.h"
 #include "core/localization/PoseModes.h"
@@ -57,22 +57,6 @@ bool isWide(const Eigen::Matrix3d& covariance) {
   const double square = LocalizationPipeline::wideMetres * LocalizationPipeline::wideMetres;
   return covariance(0, 0) > square || covariance(1, 1) > square ||
          covariance(2, 2) > LocalizationPipeline::wideRadians * LocalizationPipeline::wideRadians;
-}
-
-/// The most confident poles of a scan that has too many, in their order; the earlier of equal ones.
-void keepMostConfident(std::vector<PoleDetection>& poles) {
-  if (poles.size() <= LocalizationPipeline::mostPoles) return;
-  std::vector<std::size_t> order(poles.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return poles[a].confidence > poles[b].confidence;
-  });
-  order.resize(LocalizationPipeline::mostPoles);
-  std::sort(order.begin(), order.end());
-  std::vector<PoleDetection> kept;
-  kept.reserve(order.size());
-  for (const std::size_t i : order) kept.push_back(poles[i]);
-  poles = std::move(kept);
 }
 
 /// Variance that a motion adds in the filter to where poles are seen, m².

@@ -103,8 +103,6 @@ class POLEMCL_EXPORT LocalizationPipeline {
   static constexpr double unknownSpeed = 5;
   /// Two scans farther apart than this have a gap between them, s.
   static constexpr double gapSeconds = 2;
-  /// Most poles of a scan that are used: the most confident ones. It limits the time of a step.
-  static constexpr std::size_t mostPoles = 200;
   /// Above this distance between two scans their poles are not averaged, m.
   static constexpr double sparseMetres = 2;
   /// Poles are seen again over this distance: what chance matches say about the place is new only

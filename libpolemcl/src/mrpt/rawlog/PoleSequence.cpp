@@ -11,6 +11,7 @@
 #include <exception>
 #include <map>
 
+#include "core/common/DetectionCheck.h"
 #include "mrpt/observation/ScanFusion.h"
 #include "mrpt/rawlog/EntrySource.h"
 #include "mrpt/rawlog/ScanSource.h"
@@ -328,6 +329,7 @@ PoleScan frameOf(const CObservationPoles& observation,
   frame.time = mrpt::Clock::toDouble(observation.timestamp);
   frame.motion = motion;
   frame.poles_robot = observation.polesInRobotFrame();
+  keepMostConfident(frame.poles_robot);
   frame.visibilityRange = observation.visibilityRange;
   frame.pose_robot_sensor = observation.planarSensorPose();
   return frame;

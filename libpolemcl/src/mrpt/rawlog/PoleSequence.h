@@ -153,7 +153,8 @@ SequenceCounts streamPoles(std::shared_ptr<EntrySource> entries, const std::stri
                            const SequenceOptions& options,
                            const std::function<void(const ReadScan&)>& consume);
 
-/// \brief Reduces a scan to what map and filter need. \param scan From streamPoles().
+/// \brief Reduces a scan to what map and filter need: of its poles at most `mostDetections`, the
+/// most confident. \param scan From streamPoles().
 POLEMCL_EXPORT PoleScan frameOf(const ReadScan& scan);
 /// \brief The same from an observation that comes from elsewhere: from a sensor through
 /// ObservationPoleExtractor::process(), or from a rawlog that the caller reads.
