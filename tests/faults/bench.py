@@ -39,6 +39,8 @@ class Bench:
         if self.calls["rename"] == 0:
             raise SystemExit(f"{self.command}: {self.preload} sees no calls")
         self.new = self.undisturbed("a")
+        if self.new == self.old:
+            raise SystemExit(f"{self.command} writes the same from both inputs")
 
     def undisturbed(self, version, **options):
         self.fresh()
@@ -117,7 +119,7 @@ class Bench:
         if not wrong and not any(all(is_of(files, name) for name in units) for files in allowed):
             wrong = ["old and new files stand together: " + ", ".join(units)]
         # Of files that belong together, the others go before the main one is replaced.
-        ends = ((".rawlog", ".polemap"), ".json", "")
+        ends = ((".rawlog", ".polemap"), ".json", ".3Dscene", "")
         main = next(filter(None, ([name for name in expected if name.endswith(end)] for end in ends)), [])
         return wrong + [f"{name} is gone" for name in main if name not in units]
 

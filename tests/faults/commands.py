@@ -3,7 +3,9 @@
 import re
 import subprocess
 
-# {in} is a folder of inputs, a or b, of two days of one street; {out} gets the outputs.
+# {in} is a folder of inputs, a or b, of two days of one street, whose LiDAR is mounted higher on the second; {out}
+# gets the outputs. Left out is what is written in the same way as another output here, --stream, which grows in place,
+# and --record: the times of a live drive are other ones each time.
 COMMANDS = {line.split(": ")[0]: line.split(": ")[1].split() for line in """
 simulate-scans: pole-simulate --config demo.ini --length 40 --day {day} --set simulation.spacing_m=20 --output {out}/scans
 simulate-poles: pole-simulate --config demo.ini --length 40 --day {day} --set simulation.detections=hdl32e.json --poles {out}/drive.rawlog
@@ -26,7 +28,7 @@ eval-trajectory: pole-eval trajectory --truth {in}/drive.tum --estimate {in}/run
 eval-map: pole-eval map --truth {in}/scans/poles_gt.csv --map {in}/street.polemap --json {out}/map.json
 eval-detections: pole-eval detections --scans {in}/scans --poles {in}/poles.rawlog --visible {out}/seen.csv --json {out}/found.json
 eval-sightings: pole-eval sightings --poles {in}/drive.rawlog --output {out}/sightings.csv
-eval-features: pole-eval features --config demo.ini --scans {in}/scans --output {out}/features.csv
+eval-features: pole-eval features --config demo.ini --scans {in}/scans --poles {in}/scans/poles_gt.csv --output {out}/features.csv
 eval-global: pole-eval global --config demo.ini --map {in}/street.polemap --input {in}/drive.rawlog --truth {in}/drive.tum --trials 1 --metres 5 --json {out}/global.json
 batch: pole-batch {in}/batch.ini --output {out}/batch --jobs 1 --resume
 """.strip().splitlines()}
@@ -34,7 +36,7 @@ batch: pole-batch {in}/batch.ini --output {out}/batch --jobs 1 --resume
 UPDATE = "pole-map update --config demo.ini --map {out}/street.polemap --input {in}/drive.rawlog --truth {in}/drive.tum --output {out}/street.polemap"
 
 INPUTS = """
-pole-simulate --config demo.ini --length 40 --day {day} --set simulation.spacing_m=20 --output {in}/scans
+pole-simulate --config demo.ini --length 40 --day {day} --set simulation.spacing_m=20 sensor.height_m=1.{day} --output {in}/scans
 pole-simulate --config demo.ini --length 40 --day {day} --set simulation.detections=hdl32e.json --poles {in}/drive.rawlog
 pole-import folder --input {in}/scans --output {in}/scans.rawlog --embed
 pole-extract --config demo.ini --input {in}/scans.rawlog --output {in}/poles.rawlog

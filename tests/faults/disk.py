@@ -17,12 +17,12 @@ class Disk:
         self.contents = {path.stat().st_ino: path.read_bytes()
                          for folder in (root, keep) for path in folder.rglob("*") if path.is_file()}
 
-    def states(self, drawn):
+    def states(self, drawn, seed):
         """Lays out what the disk may hold, and names it: two extremes, and a number of drawn ones;
         none of them twice. File systems may bring names and contents to the disk in any order."""
         extremes = [("all names, no contents", [], lambda content: b""),
                     ("no names, half contents", self.changes, lambda content: content[:len(content) // 2])]
-        chances = [random.Random(number) for number in range(drawn)]
+        chances = [random.Random(f"{seed} {number}") for number in range(drawn)]
         draws = [(f"drawn {number}", lost(self.changes, chance), lambda content, c=chance: cut(content, c))
                  for number, chance in enumerate(chances)]
         seen = []

@@ -44,12 +44,14 @@ def power_cuts(bench, count, chance):
     """Before each change on the disk, and after the end; each leaves several states."""
     cases = [(number, earlier) for number in range(1, bench.calls["change"] + 2)
              for earlier in (False, True)]
-    for number, earlier in chosen(cases, 20 * count, chance, bench):
+    for number, earlier in chosen(cases, 10 * count, chance, bench):
         bench.fresh(earlier)
         code, _ = bench.finish(bench.start(fault=f"change:{number}:0"))
         ended = [] if code in (0, -signal.SIGKILL) else [f"exit {code}"]
-        for state in Disk(bench.log, bench.out, bench.keep).states(min(count, MOST_STATES)):
-            yield f"power cut before change {number}, earlier {earlier}, {state}", \
+        what = f"power cut before change {number}, earlier {earlier}"
+        disk = Disk(bench.log, bench.out, bench.keep)
+        for state in disk.states(min(count, MOST_STATES), f"{bench.command} {what}"):
+            yield f"{what}, {state}", \
                 ended + bench.judge(earlier, code) + bench.repeat()
 
 
