@@ -115,7 +115,8 @@ std::string keep(const std::string& path) {
   static int number = 0;
   const std::string name = std::to_string(::getpid()) + "-" + std::to_string(++number);
   const int before = errno;
-  ::link(path.c_str(), (setting("POLEMCL_FAULT_KEEP") + "/" + name).c_str());
+  const std::string link = setting("POLEMCL_FAULT_KEEP") + "/" + name;
+  [[maybe_unused]] const int linked = ::link(path.c_str(), link.c_str());  // no folder can be
   const std::string kept = inode(path);
   errno = before;
   return kept;
