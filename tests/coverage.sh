@@ -2,6 +2,7 @@
 # Prints the share of lines and branches that the tests reach, for each room of share/doc/architecture.md.
 # Usage: tests/coverage.sh [TEST_PROGRAM...]
 #   TEST_PROGRAM  builds and runs only these (test_core, test_io, ...); without: all tests
+# Of all tests, exits with 1 when they reach less than 95 % of the lines, or less than 85 % of the branches.
 # Builds in build-coverage, little optimized. Counts of code that runs in several threads are not exact.
 # Needs gcovr, which share/setup/install.sh full installs.
 set -eu
@@ -21,7 +22,7 @@ fi
 gcovr --root "$top" --object-directory "$build" --filter "$top/libpolemcl/" --filter "$top/apps/" \
   --exclude-throw-branches --exclude-unreachable-branches --gcov-ignore-parse-errors \
   -j "$(nproc)" --json-summary "$build/coverage.json"
-python3 - "$build/coverage.json" <<'END'
+python3 - "$build/coverage.json" "$1" <<'END'
 import collections, json, os, sys
 
 rooms = collections.defaultdict(lambda: [0, 0, 0, 0])
@@ -35,4 +36,7 @@ for file in json.load(open(sys.argv[1]))["files"]:
 print(f"{'room':30} {'lines':>8} {'reached':>8} {'branches':>9} {'reached':>8}")
 for room, (lines, all_lines, branches, all_branches) in sorted(rooms.items()):
     print(f"{room:30} {all_lines:8} {lines / max(1, all_lines):8.1%} {all_branches:9} {branches / max(1, all_branches):8.1%}")
+lines, all_lines, branches, all_branches = rooms["all"]
+if sys.argv[2] == "all" and (lines < 0.95 * all_lines or branches < 0.85 * all_branches):
+    sys.exit("coverage: less than 95 % of the lines, or less than 85 % of the branches")
 END

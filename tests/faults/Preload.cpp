@@ -4,8 +4,8 @@
 // POLEMCL_FAULT is `KIND:NUMBER:ERRNO`: the call of that kind and number fails; with 0 for ERRNO
 // the group of processes is killed instead. Kind `change` counts the calls that change names or
 // bring something to the disk. POLEMCL_FAULT_LOG gets a line for each call, with inodes for
-// folders; a file that is replaced or removed gets a second link in POLEMCL_FAULT_KEEP, so that it
-// can be put back.
+// folders and for what is replaced or removed; such a file gets a second link in
+// POLEMCL_FAULT_KEEP, so that it can be put back.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -110,15 +110,16 @@ std::string entry(const std::string& path) {
   return inode(path.substr(0, slash)) + "\t" + path.substr(slash + 1);
 }
 
-/// A second link to what is about to go: its name, or `-` where nothing can be kept.
+/// A second link to what is about to go. \return Its inode; 0 where nothing is.
 std::string keep(const std::string& path) {
   static int number = 0;
   const std::string name = std::to_string(::getpid()) + "-" + std::to_string(++number);
-  const std::string link = setting("POLEMCL_FAULT_KEEP") + "/" + name;
   const int before = errno;
-  const bool isKept = ::link(path.c_str(), link.c_str()) == 0;
+  const std::string link = setting("POLEMCL_FAULT_KEEP") + "/" + name;
+  [[maybe_unused]] const int linked = ::link(path.c_str(), link.c_str());  // no folder can be
+  const std::string kept = inode(path);
   errno = before;
-  return "\t" + (isKept ? name : "-");
+  return kept;
 }
 
 /// One call on a file that changes no name.
@@ -148,7 +149,7 @@ int renameFile(const std::string& from, const std::string& to, unsigned flags, C
   if (!isWatched(to)) return call();
   if (fails("rename", true)) return -1;
   const bool isExchange = flags == RENAME_EXCHANGE;
-  const std::string line = entry(from) + entry(to) + (isExchange ? "" : keep(to));
+  const std::string line = entry(from) + entry(to) + (isExchange ? inode(to) : keep(to));
   const int result = call();
   if (result == 0) note((isExchange ? "exchange" : "rename") + line);
   return result;

@@ -26,24 +26,30 @@ class Bench:
         make_inputs(programs, self.inputs)
 
     def learn(self, command):
-        """Undisturbed: the outputs of both versions, how long it takes, how often it does what."""
+        """Undisturbed: the outputs of both versions, how long it takes and writes, how often it
+        does what."""
         self.command, self.line = command, COMMANDS[command]
         self.earlier = self.folder / "earlier"
         shutil.rmtree(self.earlier, ignore_errors=True)
         self.old = self.undisturbed("b")
         shutil.copytree(self.out, self.earlier)
-        begin = time.monotonic()
-        self.new = self.undisturbed("a")
-        self.seconds = time.monotonic() - begin
         self.undisturbed("a", preload=True)
         self.calls = Counter(line.split("\t")[0].replace("exchange", "rename")
                              for line in self.log.read_text().splitlines())
         if self.calls["rename"] == 0:
             raise SystemExit(f"{self.command}: {self.preload} sees no calls")
+        self.new = self.undisturbed("a")
+        if self.new == self.old:
+            raise SystemExit(f"{self.command} writes the same from both inputs")
 
     def undisturbed(self, version, **options):
         self.fresh()
-        code, stderr = self.finish(self.start(version, **options))
+        begin = time.monotonic()
+        process = self.start(version, **options)
+        self.wait_for_writing(process)
+        first = time.monotonic()
+        code, stderr = self.finish(process)
+        self.seconds, self.writing = time.monotonic() - begin, time.monotonic() - first
         if code != 0:
             raise SystemExit(f"{self.command} fails without any fault: {stderr}")
         return self.files()
@@ -71,6 +77,12 @@ class Bench:
             arguments(self.programs, self.line, self.inputs, version, self.out), env=env,
             cwd=self.root, start_new_session=True, text=True, stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE, **options)
+
+    def wait_for_writing(self, process):
+        """Until the first name comes or goes in the folder of outputs."""
+        before = list(os.walk(self.out))
+        while process.poll() is None and list(os.walk(self.out)) == before:
+            time.sleep(0.0005)
 
     @staticmethod
     def finish(process):
@@ -102,12 +114,12 @@ class Bench:
         expected = whole(self.new if code == 0 else self.old if earlier else {})
         if code == 0:
             return wrong + [f"{name} is gone" for name in expected if name not in units]
-        if self.command in ("localize", "batch"):  # those remove the old first
+        if self.command.startswith(("localize", "batch")):  # those remove the old first
             return wrong
         if not wrong and not any(all(is_of(files, name) for name in units) for files in allowed):
             wrong = ["old and new files stand together: " + ", ".join(units)]
         # Of files that belong together, the others go before the main one is replaced.
-        ends = ((".rawlog", ".polemap"), ".json", "")
+        ends = ((".rawlog", ".polemap"), ".json", ".3Dscene", "")
         main = next(filter(None, ([name for name in expected if name.endswith(end)] for end in ends)), [])
         return wrong + [f"{name} is gone" for name in main if name not in units]
 

@@ -1,24 +1,65 @@
 """What a power cut leaves of a folder, from the log that Preload.cpp wrote."""
 
 import os
+import random
 import shutil
+from pathlib import Path
 
 
-def after_power_cut(log, root, keep, names_survive):
-    """Changes `root` to what a disk may hold: content that was not synced is lost. Names of folders
-    that were not synced are as before, unless `names_survive`: file systems may do either."""
-    dirty, changes = unsynced(log)
-    if not names_survive:
-        for change in reversed(changes):
-            undo(change, root, keep)
-    for folder, _, files in os.walk(root):
-        for file in (os.path.join(folder, name) for name in files):
-            if os.stat(file).st_ino in dirty:
-                os.truncate(file, 0 if names_survive else os.path.getsize(file) // 2)
+class Disk:
+    """The folder at the moment of the cut, and what of it was not brought to the disk."""
+
+    def __init__(self, log, root, keep):
+        self.root, self.top = root, root.stat().st_ino
+        self.dirty, self.changes = unsynced(log)
+        self.names = {(path.parent.stat().st_ino, path.name): path.stat().st_ino
+                      for path in root.rglob("*")}
+        self.contents = {path.stat().st_ino: path.read_bytes()
+                         for folder in (root, keep) for path in folder.rglob("*") if path.is_file()}
+
+    def states(self, drawn, seed):
+        """Lays out what the disk may hold, and names it: two extremes, and a number of drawn ones;
+        none of them twice. File systems may bring names and contents to the disk in any order."""
+        extremes = [("all names, no contents", [], lambda content: b""),
+                    ("no names, half contents", self.changes, lambda content: content[:len(content) // 2])]
+        chances = [random.Random(f"{seed} {number}") for number in range(drawn)]
+        draws = [(f"drawn {number}", lost(self.changes, chance), lambda content, c=chance: cut(content, c))
+                 for number, chance in enumerate(chances)]
+        seen = []
+        for what, missing, cut_off in extremes + draws:
+            names = dict(self.names)
+            for change in reversed(missing):
+                undo(change, names)
+            files = dict(self.files(names, self.top, Path(), cut_off))
+            if files not in seen:
+                seen.append(files)
+                self.lay_out(files)
+                yield what
+
+    def files(self, names, folder, path, cut_off):
+        """Content of each file below a folder; None for folders."""
+        for (parent, name), node in names.items():
+            if parent == folder and node in self.contents:
+                content = self.contents[node]
+                yield path / name, cut_off(content) if node in self.dirty else content
+            elif parent == folder:
+                yield path / name, None
+                yield from self.files(names, node, path / name, cut_off)
+
+    def lay_out(self, files):
+        shutil.rmtree(self.root)
+        self.root.mkdir()
+        for path, content in files.items():
+            if content is None:
+                (self.root / path).mkdir()
+            else:
+                (self.root / path).write_bytes(content)
 
 
 def unsynced(log):
-    """Inodes with content, and changes of names, that are not on the disk for sure."""
+    """Inodes with content, and changes of names, that are not on the disk for sure. A change has the
+    place that loses its name or None, the place that gets one, and what was there (0: nothing);
+    a place is the folder's inode and a name."""
     dirty, changes = set(), []
     for line in log.read_text().splitlines():
         kind, *rest = line.split("\t")
@@ -26,36 +67,39 @@ def unsynced(log):
             dirty.add(int(rest[0]))
         elif kind == "fsync":
             dirty.discard(int(rest[0]))
-            changes = [change for change in changes if change[-2] != rest[0]]
+            changes = [change for change in changes if change[1][0] != int(rest[0])]
         elif kind == "syncfs":
             dirty, changes = set(), []
-        elif kind in ("create", "mkdir"):
-            changes.append((kind, None, None, "-", *rest))
+        elif kind in ("create", "mkdir", "unlink"):
+            folder, name, *before = rest
+            changes.append((None, (int(folder), name), int(before[0]) if before else 0))
         elif kind in ("rename", "exchange"):
-            folder, name, to, new, *kept = rest
-            changes.append((kind, folder, name, kept[0] if kept else "-", to, new))
-        elif kind == "unlink":
-            folder, name, kept = rest
-            changes.append((kind, None, None, kept, folder, name))
+            folder, name, to, new, before = rest
+            changes.append(((int(folder), name), (int(to), new), int(before)))
     return dirty, changes
 
 
-def undo(change, root, keep):
-    kind, folder, name, kept, to, new = change
-    folders = {str(os.stat(path).st_ino): path for path, _, _ in os.walk(root)}
-    if to not in folders or folder is not None and folder not in folders:
-        return  # the folder itself is gone
-    there = os.path.join(folders[to], new)
-    if kind == "mkdir":
-        shutil.rmtree(there, ignore_errors=True)
-    elif kind == "create" and os.path.exists(there):
-        os.unlink(there)
-    elif kind == "rename" and os.path.exists(there):
-        os.rename(there, os.path.join(folders[folder], name))
-    elif kind == "exchange":
-        aside, here = there + ".aside", os.path.join(folders[folder], name)
-        for old, now in ((there, aside), (here, there), (aside, here)):
-            if os.path.exists(old):
-                os.rename(old, now)
-    if kept != "-":
-        os.rename(os.path.join(keep, kept), there)
+def undo(change, names):
+    source, target, before = change
+    now = names.pop(target, None)
+    if source and now:
+        names[source] = now
+    if before:
+        names[target] = before
+
+
+def lost(changes, chance):
+    """Some of them, and those that build on them: later ones at the same places, and the removal of
+    folders."""
+    share, missing, held = chance.random(), [], set()
+    for source, target, before in changes:
+        if held & {source, target, before} or chance.random() < share:
+            missing.append((source, target, before))
+            held |= {place for end in (source, target) if end for place in (end, end[0])}
+    return missing
+
+
+def cut(content, chance):
+    """Ends anywhere, or is zeros from there on."""
+    length = chance.randint(0, len(content))
+    return content[:length] + bytes((len(content) - length) * chance.randint(0, 1))

@@ -13,41 +13,46 @@ from tempfile import mkdtemp
 
 from bench import Bench
 from commands import COMMANDS
-from disk import after_power_cut
+from disk import Disk
 from limits import limits
 from together import replaced, together, updates
 
 ERRORS = {"open": ["EMFILE", "EIO"], "mkdir": ["ENOSPC", "EIO"], "write": ["ENOSPC", "EIO"],
           "fsync": ["EIO", "ENOSPC"], "syncfs": ["EIO", "ENOSPC"], "rename": ["EIO", "ENOSPC"],
           "unlink": ["EIO"], "close": ["EIO", "ENOSPC"], "read": ["EIO"]}
+MOST_STATES = 10  # drawn ones, after each power cut
 
 
 def kills(bench, count, chance):
-    """Killed at any moment of its duration, with an earlier output in its place or without."""
+    """Killed at any moment of its duration, half of them once it writes; with an earlier output in
+    its place or without."""
     for number in range(count):
-        earlier = bool(number % 2)
+        earlier, writes = bool(number % 2), number % 4 < 2
         bench.fresh(earlier)
         process = bench.start()
-        moment = chance.uniform(0, bench.seconds)
+        if writes:
+            bench.wait_for_writing(process)
+        moment = chance.uniform(0, bench.writing if writes else bench.seconds)
         time.sleep(moment)
         process.kill()
         bench.finish(process)
-        yield f"kill after {moment:.3f} s, earlier {earlier}", bench.judge(earlier) + bench.repeat()
+        yield f"kill {moment:.4f} s after its {'first name' if writes else 'start'}, earlier {earlier}", \
+            bench.judge(earlier) + bench.repeat()
 
 
 def power_cuts(bench, count, chance):
-    """Before each change on the disk, and after the end; names survive or not."""
-    cases = [(number, earlier, survive) for number in range(1, bench.calls["change"] + 2)
-             for earlier in (False, True) for survive in (True, False)]
-    for number, earlier, survive in chosen(cases, 40 * count, chance, bench):
+    """Before each change on the disk, and after the end; each leaves several states."""
+    cases = [(number, earlier) for number in range(1, bench.calls["change"] + 2)
+             for earlier in (False, True)]
+    for number, earlier in chosen(cases, 10 * count, chance, bench):
         bench.fresh(earlier)
         code, _ = bench.finish(bench.start(fault=f"change:{number}:0"))
-        after_power_cut(bench.log, bench.out, bench.keep, names_survive=survive)
-        wrong = bench.judge(earlier, code)
-        if code not in (0, -signal.SIGKILL):
-            wrong.append(f"exit {code}")
-        yield f"power cut before change {number}, earlier {earlier}, names survive {survive}", \
-            wrong + (bench.repeat() if number % 4 == 0 else [])
+        ended = [] if code in (0, -signal.SIGKILL) else [f"exit {code}"]
+        what = f"power cut before change {number}, earlier {earlier}"
+        disk = Disk(bench.log, bench.out, bench.keep)
+        for state in disk.states(min(count, MOST_STATES), f"{bench.command} {what}"):
+            yield f"{what}, {state}", \
+                ended + bench.judge(earlier, code) + bench.repeat()
 
 
 def io_errors(bench, count, chance):
@@ -60,8 +65,7 @@ def io_errors(bench, count, chance):
         fault = f"{kind}:{number}:{getattr(errno, error)}"
         code, stderr = bench.finish(bench.start(fault=fault))
         yield f"{error} of {kind} {number}, earlier {earlier}", \
-            bench.said(code, stderr) + bench.judge(earlier, code) + \
-            (bench.repeat() if number % 4 == 0 else [])
+            bench.said(code, stderr) + bench.judge(earlier, code) + bench.repeat()
 
 
 def chosen(cases, most, chance, bench):

@@ -3,10 +3,11 @@
 # the complete earlier one, or nothing; the same command again must give the bytes of an undisturbed run.
 # Usage: tests/faults/run.sh [COUNT | --long] [NAME...]
 #   COUNT   trials of each fault for each command; more of power and error; 3 unless given
-#   --long  as COUNT 25: all power cuts; takes an hour
+#   --long  as COUNT 25: all power cuts, with ten drawn states of the disk after each; takes hours
 #   NAME    only these faults or commands (map-build, batch, ...; see commands.py):
-#     kill      kill -9 at a random moment
-#     power     the power is cut: what was not brought to the disk is lost (Preload.cpp, disk.py)
+#     kill      kill -9 at a random moment, half of them after the first name comes or goes
+#     power     the power is cut: of what was not brought to the disk, all, nothing or any part is lost (Preload.cpp,
+#               disk.py)
 #     error     a call of the system fails: full disk, broken disk, no descriptor
 #     limit     too few descriptors, too little memory or space, no right to write
 #     together  two at once with one output; updates: two of pole-map update in place
@@ -17,7 +18,7 @@ set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 case ${1-} in
   -h | --help)
-    sed -n '2,15s/^# //p' "$0"
+    sed -n '2,16s/^# //p' "$0"
     exit 0
     ;;
   --long) count=25 && shift ;;

@@ -45,7 +45,7 @@ def both(bench, chance, allowed):
         wrong += [] if any(code == 0 for code, _ in ends) else ["none was done"]
     else:
         wrong += [f"exit {code}: {stderr.strip()}" for code, stderr in ends if code != 0]
-    if bench.command in ("localize", "eval-trajectory", "eval-detections"):  # several outputs, each for itself
+    if bench.command.startswith(("localize", "eval-trajectory", "eval-detections")):  # several outputs, each for itself
         wrong += bench.judge(False)
     elif bench.files() not in allowed:
         wrong.append("not the output of one of them")

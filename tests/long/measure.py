@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures one part of tests/long/run.sh; adds its figures to OUT/long.json.
 
-Exits with 1 when a promise is broken, latencies aside.
+Exits with 1 when a promise is broken.
 """
 import argparse
 import datetime
@@ -23,6 +23,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "benchmark"))
 import packet_rate  # noqa: E402
 
 GROWTH = 5.0  # MB
+SLOWEST = 5.0  # of 99.9 % of the steps, in medians
 RATE = 10  # scans a second
 
 
@@ -36,6 +37,15 @@ def resident(pid):
     return int(lines[0].split()[1]) / 1024 if lines else None
 
 
+def largest_child(pid):
+    """The resident memory of the largest process that it has started and that still runs, MB."""
+    try:
+        lists = [file.read_text() for file in pathlib.Path(f"/proc/{pid}/task").glob("*/children")]
+    except OSError:  # a thread has ended
+        return 0
+    return max((resident(child) or 0 for child in " ".join(lists).split()), default=0)
+
+
 def waited(pid):
     """How long its main thread could have run, but had no core, s: of a busy machine."""
     return int(pathlib.Path(f"/proc/{pid}/schedstat").read_text().split()[1]) / 1e9
@@ -47,12 +57,14 @@ class Memory(threading.Thread):
     def __init__(self, pid, reached):
         super().__init__(daemon=True)
         self.pid, self.reached, self.samples, self.waited = pid, reached, [], 0.0
+        self.largest_child = 0.0
         self.start()
 
     def run(self):
         while (size := resident(self.pid)) is not None:
             self.samples.append((self.reached(), size))
             self.waited = waited(self.pid)
+            self.largest_child = max(self.largest_child, largest_child(self.pid))
             time.sleep(1)
 
     def figures(self, begin):
@@ -118,6 +130,10 @@ def is_sound(figures):
             and figures["nan_in_files"] == 0 and is_flat(figures["memory"]))
 
 
+def is_quick(figures):
+    return figures["latency"]["step"]["p99.9_by_median"] <= SLOWEST
+
+
 def is_flat(memory):
     return memory["samples"] > 0 and memory["growth_mb"] <= GROWTH
 
@@ -159,7 +175,8 @@ def measure_file(options):
     result = {"one_thread": figures[0], "two_threads": figures[1],
               "same_files": same(drives[0].folder, drives[1].folder),
               "same_stream": drives[0].digest.digest() == drives[1].digest.digest()}
-    sound = all(map(is_sound, figures)) and result["same_files"] and result["same_stream"]
+    sound = (all(is_sound(each) and is_quick(each) for each in figures)
+             and result["same_files"] and result["same_stream"])
     for drive in drives:
         shutil.rmtree(drive.folder)
     return result, sound
@@ -176,7 +193,7 @@ def measure_live(options):
     summary = json.loads((drive.folder / "summary.json").read_text())
     result |= {"speed": options.speed, "dropped": summary["dropped_scans"]}
     shutil.rmtree(drive.folder)
-    return result, is_sound(result)
+    return result, is_sound(result) and is_quick(result)
 
 
 def measure_packets(options):
@@ -223,7 +240,8 @@ def measure_batch(options):
               "scans": sum(summary["scans"] for summary in summaries),
               "failures": options.runs - len(summaries),
               "lost_scans": sum(run["lost"] for run in health), "wall_s": round(wall, 1),
-              "memory": memory.figures(1)}
+              "memory": memory.figures(1),  # of pole-batch itself
+              "largest_child_mb": round(memory.largest_child, 1)}
     shutil.rmtree(folder, ignore_errors=True)
     return result, (process.returncode == 0 and result["failures"] == 0
                     and is_flat(result["memory"]))

@@ -13,10 +13,12 @@
 #     packets  a standing HDL-32E, whose packets come by UDP at the rate of the sensor
 #     batch    the runs by pole-batch
 # The vehicle goes round and round a closed road of 3 km at 5 m/s, in the map of its first lap on another day.
-# Memory is VmRSS, once a second. Exits with 1 when memory grows by more than 5 MB after the first hour (live
-# packets: minute; batch: run), a pose is NaN or missing, bytes differ, or a run fails. Latencies are reported
-# only: they are those of this machine with all that it does. Programs: build/bin, or POLEMCL_BIN; the driver:
-# build/tests/long/long-player.so, or POLEMCL_LONG_PLAYER. Needs 4 GB on the disk; two hours on 2 cores.
+# Memory is VmRSS, once a second; of the batch that of pole-batch, and its largest child is told. Exits with 1 when
+# memory grows by more than 5 MB after the first hour (live packets: minute; batch: run), a pose is NaN or missing,
+# bytes differ, or a run fails; also when 99.9 % of the steps of a drive, from file or live, take up to more than 5
+# times the median: give the machine nothing else to do. Other latencies are reported only. Programs: build/bin, or
+# POLEMCL_BIN; the driver: build/tests/long/long-player.so, or POLEMCL_LONG_PLAYER. Needs 4 GB on the disk; two
+# hours on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
