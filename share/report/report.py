@@ -43,9 +43,9 @@ def column(key, values):
 
 
 def clean(value):
-    """Control characters, which no page may hold, become U+FFFD."""
+    """Characters that control a page or the direction of its text become U+FFFD."""
     if isinstance(value, str):
-        return re.sub(r"[\x00-\x08\x0b-\x1f\x7f]", "\ufffd", value)
+        return re.sub(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]", "\ufffd", value)
     if isinstance(value, list):
         return [clean(one) for one in value]
     if isinstance(value, dict):
@@ -277,8 +277,9 @@ def main():
         written = json.load(sys.stdin.buffer) if sys.argv[2:] else read(folder / "results.json")
         results = summaries.summed_up(written)
         report = Report(results, read(timings) if timings.exists() else None)
-        write(folder, {"runs.csv": files.runs_csv(results), "sessions.csv": files.sessions_csv(results),
-                       "maps.csv": files.maps_csv(results), "table.tex": tables(report),
+        shown = report.results
+        write(folder, {"runs.csv": files.runs_csv(shown), "sessions.csv": files.sessions_csv(shown),
+                       "maps.csv": files.maps_csv(shown), "table.tex": tables(report),
                        "report.html": page(report), "results.json": files.json_text(results) + "\n"})
     except (OSError, ValueError) as error:
         print(f"report.py: {error}", file=sys.stderr)
@@ -286,6 +287,9 @@ def main():
     except (AttributeError, IndexError, KeyError, TypeError, jinja2.UndefinedError) as error:
         print(f"report.py: {folder}: results.json or timings.json is not as pole-batch writes it "
               f"({type(error).__name__}: {error}); run pole-batch again", file=sys.stderr)
+        return 1
+    except RecursionError:
+        print(f"report.py: {folder}: results.json or timings.json is nested too deeply", file=sys.stderr)
         return 1
     return 0
 

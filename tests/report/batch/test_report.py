@@ -368,6 +368,25 @@ class Usage(unittest.TestCase):
             code, said = self.run_script(folder)
             self.assertEqual((code, said.count("\n"), list(file.parent.iterdir())), (1, 1, [file]))
 
+    def test_replaces_characters_that_turn_text_around(self):
+        marks = "".join(map(chr, (0x80, 0x9f, 0x202a, 0x202e, 0x2066, 0x2069)))
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            text = json.dumps(WRITTEN, ensure_ascii=False).replace('"plain"', f'"pl{marks}ain"')
+            (folder / "results.json").write_text(text, encoding="utf-8")
+            self.assertEqual(self.run_script(str(folder))[0], 0)
+            for name in ("table.tex", "runs.csv", "sessions.csv", "maps.csv", "report.html"):
+                text = (folder / name).read_text(encoding="utf-8")
+                self.assertFalse(set(marks) & set(text), name)
+                self.assertIn("pl" + "\ufffd" * len(marks) + "ain", text)
+
+    def test_refuses_results_nested_too_deeply(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "results.json").write_text("[" * 200000)
+            code, said = self.run_script(folder)
+            self.assertEqual((code, said.count("\n")), (1, 1))
+            self.assertIn("nested too deeply", said)
+
     def test_refuses_results_that_pole_batch_did_not_write(self):
         without = [{key: value for key, value in WRITTEN.items() if key != gone}
                    for gone in ("dataset", "sessions", "settings", "results")]
