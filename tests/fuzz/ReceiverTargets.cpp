@@ -10,7 +10,6 @@
 
 #include <polemcl/core/common/Types.h>
 #include "fuzz/Fuzz.h"
-#include "io/file/Bytes.h"
 #include "mrpt/live/LiveQueue.h"
 #include "mrpt/live/PacketScanner.h"
 #include "mrpt/live/PcapFile.h"
