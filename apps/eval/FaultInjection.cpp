@@ -6,11 +6,14 @@
 #include "core/common/Angles.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/common/Transform.h"
+#include "io/data/PlanarMotion.h"
 #include "io/file/TextFile.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 
 namespace polemcl::apps {
 namespace {
+
+constexpr double kLongestDelay = 1;  // of a scan that comes late, s
 
 class Injector {
  public:
@@ -156,6 +159,8 @@ class Injector {
         return hideHalf();
       case Fault::snow:
         return addFalsePoles();
+      case Fault::late:
+        return delayScans();
       default:
         for (std::size_t i = m_trial.begin; i < m_trial.end; ++i) {
           PoleScan& frame = m_trial.frames[i];
@@ -230,6 +235,43 @@ class Injector {
       }
   }
 
+  /// The times of the scans stay the true ones.
+  void delayScans() {
+    std::vector<double> arrivals;
+    for (std::size_t i = 0; i < m_trial.frames.size(); ++i) {
+      const bool isLate = i >= m_trial.begin && i < m_trial.end;
+      arrivals.push_back(m_trial.frames[i].time +
+                         (isLate ? uniform(m_random, 0, kLongestDelay) : 0));
+    }
+    keepOnly(usedScans(arrivals));
+  }
+
+  /// The motion to a scan that is left out goes on to the next one.
+  void keepOnly(const std::vector<std::size_t>& used) {
+    const Trial all = std::move(m_trial);
+    const auto usedBefore = [&](std::size_t scan) {
+      return static_cast<std::size_t>(std::lower_bound(used.begin(), used.end(), scan) -
+                                      used.begin());
+    };
+    m_trial = Trial();
+    m_trial.origin = all.origin;
+    m_trial.begin = usedBefore(all.begin);
+    m_trial.end = usedBefore(all.end);
+    std::optional<PoseWithCovariance> moved;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < all.frames.size() && next < used.size(); ++i) {
+      const auto& motion = all.frames[i].motion;
+      moved = moved && motion ? io::composeMotions(*moved, *motion) : motion;
+      if (i != used[next]) continue;
+      m_trial.frames.push_back(all.frames[i]);
+      m_trial.frames.back().motion = moved;
+      m_trial.truth.push_back(all.truth[i]);
+      m_trial.driven.push_back(all.driven[i]);
+      moved.reset();
+      ++next;
+    }
+  }
+
   const TrialDrive& m_drive;
   const FaultOptions& m_options;
   std::mt19937_64& m_random;
@@ -241,12 +283,23 @@ class Injector {
 const char* name(Fault fault) {
   static constexpr const char* kNames[] = {"none",  "kidnap",    "wrong-map", "blind",
                                            "stuck", "slip",      "jump",      "clock",
-                                           "moved", "half-gone", "snow"};
+                                           "moved", "half-gone", "snow",      "late"};
   return kNames[static_cast<int>(fault)];
 }
 
 double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+std::vector<std::size_t> usedScans(const std::vector<double>& arrivals) {
+  std::vector<std::size_t> used;
+  double first = INFINITY;  // arrival of those after scan i
+  for (std::size_t i = arrivals.size(); i-- > 0;) {
+    if (arrivals[i] <= first) used.push_back(i);
+    first = std::min(first, arrivals[i]);
+  }
+  std::reverse(used.begin(), used.end());
+  return used;
 }
 
 Trial injectFault(const TrialDrive& drive, const FaultOptions& options, std::mt19937_64& random) {

@@ -3,6 +3,7 @@
 /// \brief Faults put into a recorded drive: what the localization sees, and what is true.
 
 #include <random>
+#include <vector>
 
 #include "eval/Trial.h"
 
@@ -19,7 +20,8 @@ enum class Fault {
   clock,     ///< the odometry is that of 0.1 to 0.5 s before or after
   moved,  ///< a LiDAR that sees what is behind the vehicle: moved by 0.1 to 0.5 m, 1 to 5 degrees
   halfGone,  ///< half of the poles of the map are gone
-  snow       ///< twice as many false poles as there are poles otherwise, others in each scan
+  snow,      ///< twice as many false poles as there are poles otherwise, others in each scan
+  late       ///< each scan comes 0 to 1 s late, so some come after newer ones and are not used
 };
 const char* name(Fault fault);  ///< of the command line
 
@@ -35,6 +37,10 @@ struct FaultOptions {
 
 /// \brief Uniform in an interval; the same numbers on every machine.
 double uniform(std::mt19937_64& random, double low, double high);
+
+/// \brief The scans of a live drive that are used, as LiveQueue says: those that come after a newer
+/// one are not. \param arrivals Of the scans in the order of their times, s. \return Their indices.
+std::vector<std::size_t> usedScans(const std::vector<double>& arrivals);
 
 /// \brief Draws a place for the fault and puts it in; `none` leaves the whole drive. The trial
 /// starts at its true pose.

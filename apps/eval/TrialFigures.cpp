@@ -180,6 +180,7 @@ bool passes(Fault fault, const TrialOutcome& outcome) {
              within(outcome.ok, -1, kWithinMetres);
     case Fault::clock:
     case Fault::moved:
+    case Fault::late:
       return within(outcome.ok, -1, kWithinMetres);
     case Fault::halfGone:
     case Fault::snow:

@@ -52,7 +52,7 @@ void declareFault(CLI::App& cli, TrialOptions& options) {
   std::vector<std::pair<std::string, Fault>> faults;
   for (const Fault fault :
        {Fault::none, Fault::kidnap, Fault::wrongMap, Fault::blind, Fault::stuck, Fault::slip,
-        Fault::jump, Fault::clock, Fault::moved, Fault::halfGone, Fault::snow})
+        Fault::jump, Fault::clock, Fault::moved, Fault::halfGone, Fault::snow, Fault::late})
     faults.emplace_back(name(fault), fault);
   addChoice(cli, "--fault", options.fault.fault, faults,
             "Kind of fault; none: the whole drive as it is")

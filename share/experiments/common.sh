@@ -148,7 +148,7 @@ fault_table() {
 }
 
 # Faults that last for a while, of pole-eval faults.
-lasting="blind stuck slip jump clock moved half-gone snow"
+lasting="blind stuck slip jump clock moved half-gone snow late"
 
 # Odometry of simulated drives, unless a script says otherwise: wheel ticks and a gyroscope, with errors that
 # their covariances do not know (simulation.md).

@@ -3,7 +3,8 @@
 # along a 6 km road (poles drawn by the model of share/models/hdl32e.json, another day and another
 # drive than the map's, odometry of wheels, 1 % too long). 200 trials each on five worlds: kidnapped, wrong
 # map, blind; odometry stuck, slipping, jumping, of another clock; a LiDAR moved; half of the poles gone; false
-# poles. Also: whole drives with half of the poles gone and twice the false detections, and healthy drives of 10 h.
+# poles; scans that come late, in another order. Also: whole drives with half of the poles gone and twice the
+# false detections, and healthy drives of 10 h.
 # Usage: share/experiments/faults.sh [--quick] OUT [TRACK]
 #   OUT      gets maps, drives, one JSON and one text for each fault, table.txt and faults.json
 #   TRACK    the road as poses, 12 numbers a line, plain or gzip; $POLEMCL_DATA/tracks/kaist01.txt.gz unless

@@ -41,7 +41,7 @@ TEST(Completion, OfSubcommandsAndOptions) {
 
 TEST(Completion, OfWordsThatAnOptionAllows) {
   EXPECT_EQ(offered("pole-eval faults --fault ''"),
-            "none,kidnap,wrong-map,blind,stuck,slip,jump,clock,moved,half-gone,snow");
+            "none,kidnap,wrong-map,blind,stuck,slip,jump,clock,moved,half-gone,snow,late");
   EXPECT_EQ(offered("pole-eval faults --fault s"), "stuck,slip,snow");
   EXPECT_EQ(offered("pole-eval trajectory --per = m"), "metre");
   EXPECT_EQ(offered("pole-eval trajectory --per ="), "pose,metre");

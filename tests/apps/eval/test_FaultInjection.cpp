@@ -1,7 +1,12 @@
+#include <mrpt/obs/CObservationOdometry.h>
+
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/common/Angles.h"
 #include "core/common/Transform.h"
+#include "mrpt/live/LiveQueue.h"
 #include "support/TrialFixture.h"
 
 namespace polemcl::test_trials {
@@ -150,6 +155,80 @@ TEST_F(FaultTrials, AnOdometryWithAnotherClockTellsTheMotionOfAnotherTime) {
   }
   EXPECT_GT(early, 3);  // of 19: half, by chance
   EXPECT_LT(early, 16);
+}
+
+TEST_F(FaultTrials, ScansThatComeAfterNewerOnesAreLeftOutButNotTheirMotion) {
+  TrialDrive steady = drive();
+  for (std::size_t i = 1; i < steady.frames.size(); ++i)
+    steady.frames[i].motion =
+        PoseWithCovariance{{1, 0, 0}, Eigen::Vector3d(0.01, 0.02, 0).asDiagonal()};
+  options.fault.fault = Fault::late;
+  double faulty = 0, used = 0;
+  for (std::uint64_t seed = 1; seed < 20; ++seed) {
+    std::mt19937_64 random(seed);
+    const Trial late = injectFault(steady, options.fault, random);
+    EXPECT_EQ(late.begin, 40u);
+    faulty += 30;  // 6 s of 0.2 s
+    used += static_cast<double>(late.end - late.begin);
+    ASSERT_EQ(late.frames.size(), late.truth.size());
+    ASSERT_EQ(late.frames.size(), late.driven.size());
+    const auto scanOf = [&](std::size_t i) {
+      const double before = late.frames[i].time - late.frames[0].time;
+      return static_cast<std::size_t>(std::lround(before / 0.2));
+    };
+    EXPECT_EQ(scanOf(late.end), 70u);
+    for (std::size_t i = 1; i < late.frames.size(); ++i) {
+      const std::size_t step = scanOf(i) - scanOf(i - 1);
+      if (scanOf(i) <= 40 || scanOf(i) > 70)
+        EXPECT_EQ(step, 1u) << i;
+      else
+        EXPECT_TRUE(step >= 1 && step <= 6) << step;  // 1 s late at most
+      const PoseWithCovariance& motion = *late.frames[i].motion;
+      EXPECT_NEAR(motion.mean.x, static_cast<double>(step), 1e-9);
+      EXPECT_NEAR(motion.covariance(0, 0), 0.01 * static_cast<double>(step), 1e-9);
+      EXPECT_NEAR(motion.covariance(1, 1), 0.02 * static_cast<double>(step), 1e-9);
+      const std::size_t at = late.origin + scanOf(i);
+      EXPECT_EQ(late.truth[i].x, steady.truth[at].x);
+      EXPECT_EQ(late.driven[i], steady.driven[at] - steady.driven[late.origin]);
+      EXPECT_EQ(late.frames[i].poles_robot.size(), steady.frames[at].poles_robot.size());
+    }
+  }
+  EXPECT_NEAR(used / faulty, 0.59, 0.08);  // of delays that are uniform
+}
+
+/// Each scan is taken as soon as it is there, if at all; the odometry of its time is there.
+TEST(UsedScans, AreThoseOfALiveDrive) {
+  const auto fromQueue = [](const std::vector<double>& arrivals) {
+    LiveQueue queue;
+    RawlogEntry entry;
+    const auto odometry = mrpt::obs::CObservationOdometry::Create();
+    odometry->timestamp = mrpt::Clock::fromDouble(3);
+    queue.push(odometry);
+    queue.next(entry);
+    std::vector<std::size_t> inOrder(arrivals.size()), taken;
+    std::iota(inOrder.begin(), inOrder.end(), 0);
+    std::stable_sort(inOrder.begin(), inOrder.end(),
+                     [&](std::size_t a, std::size_t b) { return arrivals[a] < arrivals[b]; });
+    for (const std::size_t i : inOrder) {
+      const auto scan = CObservationPoles::Create();
+      scan->timestamp = mrpt::Clock::fromDouble(0.1 * static_cast<double>(i));
+      const std::size_t dropped = queue.dropped();
+      queue.push(scan);
+      if (queue.dropped() > dropped) continue;
+      queue.next(entry);
+      taken.push_back(i);
+    }
+    return taken;
+  };
+  std::mt19937_64 random(4);
+  for (int drive = 0; drive < 20; ++drive) {
+    std::vector<double> arrivals;
+    for (int i = 0; i < 25; ++i) arrivals.push_back(0.1 * i + uniform(random, 0, 1));
+    arrivals[5] = arrivals[6];  // at once, in their order
+    EXPECT_EQ(usedScans(arrivals), fromQueue(arrivals));
+  }
+  EXPECT_EQ(usedScans({1, 3, 2, 4}), (std::vector<std::size_t>{0, 2, 3}));
+  EXPECT_TRUE(usedScans({}).empty());
 }
 
 TEST_F(FaultTrials, AKidnappingJumpsAsFarAsToldAndTimeGoesOn) {

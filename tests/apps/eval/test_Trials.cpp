@@ -116,14 +116,16 @@ TEST(TrialOutcomes, PassWhatIsDemandedOfEachFault) {
   EXPECT_FALSE(passes(Fault::blind, outcome));
   TrialOutcome right;
   right.ok = Delay{1, 20};
-  for (const Fault fault : {Fault::clock, Fault::moved, Fault::halfGone, Fault::snow})
+  for (const Fault fault : {Fault::clock, Fault::moved, Fault::halfGone, Fault::snow, Fault::late})
     EXPECT_TRUE(passes(fault, right));
   right.lost = Delay{1, 1};
   EXPECT_TRUE(passes(Fault::moved, right));
   EXPECT_FALSE(passes(Fault::snow, right));
   EXPECT_FALSE(passes(Fault::halfGone, right));
+  EXPECT_TRUE(passes(Fault::late, right));
   right.ok = Delay{1, 21};
   EXPECT_FALSE(passes(Fault::clock, right));
+  EXPECT_FALSE(passes(Fault::late, right));
 }
 
 TEST_F(Trials, AVehicleIsFoundInItsCity) {
@@ -236,7 +238,7 @@ TEST_F(Trials, RefuseWhatCannotBeTried) {
 
 TEST_F(FaultTrials, FaultsAreNoticedAndRecoveredFrom) {
   for (const Fault fault : {Fault::kidnap, Fault::blind, Fault::stuck, Fault::jump, Fault::clock,
-                            Fault::moved, Fault::halfGone, Fault::snow}) {
+                            Fault::moved, Fault::halfGone, Fault::snow, Fault::late}) {
     options.fault.fault = fault;
     for (const TrialOutcome& trial : outcomes(drive(), faultyStretches)) {
       EXPECT_TRUE(trial.okBefore);
