@@ -28,11 +28,12 @@ inline bool waitFor(const std::function<bool()>& condition) {
   return true;
 }
 
-inline sockaddr_in loopback(int port) {
+inline sockaddr_in loopback(int port, const std::string& host = "127.0.0.1") {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1)
+    throw std::runtime_error("no address: " + host);
   return address;
 }
 
@@ -68,7 +69,9 @@ inline std::optional<std::size_t> bytesWaiting(int port) {
 
 class UdpSender {
  public:
-  explicit UdpSender(int port) : m_port(port), m_socket(socket(AF_INET, SOCK_DGRAM, 0)) {}
+  /// \param host All of 127.x.y.z are of this computer.
+  explicit UdpSender(int port, const std::string& host = "127.0.0.1")
+      : m_port(port), m_address(loopback(port, host)), m_socket(socket(AF_INET, SOCK_DGRAM, 0)) {}
   ~UdpSender() { close(m_socket); }
   UdpSender(const UdpSender&) = delete;
   UdpSender& operator=(const UdpSender&) = delete;
@@ -92,15 +95,16 @@ class UdpSender {
 
  private:
   void put(const std::string& packet) const {
-    const auto address = loopback(m_port);
-    sendto(m_socket, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&address),
-           sizeof address);
+    sendto(m_socket, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&m_address),
+           sizeof m_address);
   }
   void waitUntilRead() const {
     waitFor([this] { return bytesWaiting(m_port).value_or(0) == 0; });
   }
 
-  int m_port, m_socket;
+  int m_port;
+  sockaddr_in m_address;
+  int m_socket;
 };
 
 }  // namespace testing_apps

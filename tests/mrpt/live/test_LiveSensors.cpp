@@ -74,6 +74,26 @@ TEST_F(LiveSensorsTest, OdometryComesFromTheNetwork) {
   EXPECT_EQ(ended(), 0u);
 }
 
+TEST_F(LiveSensorsTest, OdometryToOtherAddressesIsHeardOnlyIfAsked) {
+  for (const std::string address : {"", "address = 0.0.0.0\n"}) {
+    observations.clear();
+    const int port = freeUdpPort();
+    const auto sensors =
+        start("[odo]\ndriver = CUdpOdometry\nudp_port = " + std::to_string(port) + "\n" + address);
+    const UdpSender here(port), elsewhere(port, "127.0.0.2");
+    ASSERT_TRUE(here.waitForListener());
+    elsewhere.send("1 0 0");
+    here.send("2 0 0");
+    const std::size_t heard = address.empty() ? 1 : 2;
+    ASSERT_TRUE(waitFor([&] { return observed() >= heard; }));
+    const std::lock_guard lock(mutex);
+    ASSERT_EQ(observations.size(), heard);
+    const auto last =
+        std::dynamic_pointer_cast<mrpt::obs::CObservationOdometry>(observations.back());
+    EXPECT_EQ(last->odometry.x(), 2);
+  }
+}
+
 /// The driver looks for packets twice a second only.
 TEST_F(LiveSensorsTest, PacketsHaveTheTimesOfTheirArrival) {
   const int port = freeUdpPort();

@@ -34,9 +34,10 @@ class OusterScannerTest : public LiveSensorsTest {
         packets.push_back(std::move(packet));
     return packets;
   }
-  void receive(const std::string& ini, const std::vector<std::string>& packets) {
+  void receive(const std::string& ini, const std::vector<std::string>& packets,
+               const std::string& host = "127.0.0.1") {
     const auto sensors = start(ini);
-    const UdpSender data(port);
+    const UdpSender data(port, host);
     ASSERT_TRUE(data.waitForListener());
     for (const auto& packet : packets) data.send(packet);
   }
@@ -204,6 +205,13 @@ TEST_F(OusterScannerTest, CountsWhatIsLostAndWhatIsIgnored) {
   narrow.erase(narrow.begin() + 20);
   receive(ouster("", model.metadata(",\"column_window\":[256,511]")), narrow);
   EXPECT_EQ(lost, 1u);
+}
+
+TEST_F(OusterScannerTest, HearsPacketsToOtherAddressesOnlyIfAsked) {
+  receive(ouster(), drive(3), "127.0.0.2");
+  EXPECT_EQ(observed(), 0u);
+  receive(ouster("address = 0.0.0.0\n"), drive(3), "127.0.0.2");
+  EXPECT_EQ(observed(), 1u);
 }
 
 /// Memory must not grow for ever.

@@ -27,9 +27,12 @@ class VelodyneReceiverTest : public LiveSensorsTest {
   }
   /// Starts a LiDAR, sends it packets and ends it when all have been read. The first turn is left
   /// out, the last one has no end.
-  void receive(const std::string& ini, const Packets& packets, const Packets& positions = {}) {
+  void receive(const std::string& ini, const Packets& packets, const Packets& positions = {},
+               const std::string& dataHost = "127.0.0.1",
+               const std::string& positionHost = "127.0.0.1") {
     const auto sensors = start(ini);
-    const UdpSender data(portIn(ini)), position(portIn(ini, "position_port"));
+    const UdpSender data(portIn(ini), dataHost),
+        position(portIn(ini, "position_port"), positionHost);
     ASSERT_TRUE(data.waitForListener());
     position.sendAll(positions);
     data.sendAll(packets);
@@ -262,6 +265,20 @@ TEST_F(VelodyneReceiverTest, WarnsThatItListensToThisComputerOnly) {
   EXPECT_HAS(warnings[0], "set address = 0.0.0.0");
   start(velodyne("address = 0.0.0.0\n"));
   EXPECT_EQ(warnings.size(), 1u);
+}
+
+TEST_F(VelodyneReceiverTest, HearsPacketsToOtherAddressesOnlyIfAsked) {
+  const std::string here = "127.0.0.1", elsewhere = "127.0.0.2";
+  const Packets packets = drive(3, 1000), positions{positionPacket('A')};
+  receive(velodyne(""), packets, positions, elsewhere, elsewhere);
+  EXPECT_EQ(observed(), 0u);
+  receive(velodyne(""), packets, positions, here, elsewhere);
+  ASSERT_EQ(observed(), 1u);
+  EXPECT_FALSE(scans()[0]->has_satellite_timestamp);
+  receive(velodyne("address = 0.0.0.0\n"), packets, positions, elsewhere, elsewhere);
+  ASSERT_EQ(observed(), 2u);
+  EXPECT_TRUE(scans()[1]->has_satellite_timestamp);
+  EXPECT_EQ(ignored, 0u);
 }
 
 TEST_F(VelodyneReceiverTest, RefusesWhatCannotBe) {
