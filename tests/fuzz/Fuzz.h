@@ -20,15 +20,16 @@ struct Target {
 
 /// \name The targets, by subject
 /// @{
-std::vector<Target> tableTargets();    ///< text: tables, trajectories
-std::vector<Target> mapTargets();      ///< maps and inventories
-std::vector<Target> settingTargets();  ///< INI files, batches, models
-std::vector<Target> scanTargets();     ///< clouds
-std::vector<Target> bagTargets();      ///< recordings of ROS 2
-std::vector<Target> folderTargets();   ///< datasets
-std::vector<Target> mrptTargets();     ///< archives and rawlogs
-std::vector<Target> liveTargets();     ///< packets of sensors
-std::vector<Target> methodTargets();   ///< extraction, search and adjustment on arbitrary numbers
+std::vector<Target> tableTargets();     ///< text: tables, trajectories
+std::vector<Target> mapTargets();       ///< maps and inventories
+std::vector<Target> settingTargets();   ///< INI files, batches, models
+std::vector<Target> scanTargets();      ///< clouds
+std::vector<Target> bagTargets();       ///< recordings of ROS 2
+std::vector<Target> folderTargets();    ///< datasets
+std::vector<Target> mrptTargets();      ///< archives and rawlogs
+std::vector<Target> liveTargets();      ///< packets of sensors
+std::vector<Target> receiverTargets();  ///< packets become turns
+std::vector<Target> methodTargets();    ///< extraction, search and adjustment on arbitrary numbers
 /// @}
 
 /// \brief A folder of this process in memory. TMPDIR says where.

@@ -28,7 +28,7 @@ const std::vector<Target>& allTargets() {
     std::vector<Target> all;
     for (const auto& some :
          {tableTargets(), mapTargets(), settingTargets(), scanTargets(), bagTargets(),
-          folderTargets(), mrptTargets(), liveTargets(), methodTargets()})
+          folderTargets(), mrptTargets(), liveTargets(), receiverTargets(), methodTargets()})
       all.insert(all.end(), some.begin(), some.end());
     return all;
   }();
