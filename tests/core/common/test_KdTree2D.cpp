@@ -80,6 +80,21 @@ TEST(KdTree2D, RadiusIsStrict) {
   EXPECT_TRUE(tree.nearest(0, 0, std::nextafter(5.0, 6.0)));
 }
 
+TEST(KdTree2D, EndsASearchThatFindsTooMany) {
+  std::mt19937_64 random(3);
+  const auto points = randomPoints(random, 300, 20);
+  const KdTree2D tree(points);
+  const std::vector<PointHit> expected = bruteWithin(points, 1, 2, 10);
+  ASSERT_GT(expected.size(), 30u);
+  std::vector<PointHit> hits;
+  EXPECT_TRUE(tree.withinUnlessMore(1, 2, 10, expected.size(), hits));
+  EXPECT_EQ(hits.size(), expected.size());
+  for (const std::size_t most : {expected.size() - 1, std::size_t{20}, std::size_t{0}}) {
+    EXPECT_FALSE(tree.withinUnlessMore(1, 2, 10, most, hits));
+    EXPECT_EQ(hits.size(), most + 1) << "it went on";
+  }
+}
+
 TEST(KdTree2D, EmptyFindsNothing) {
   const KdTree2D tree({});
   std::vector<PointHit> hits(3);

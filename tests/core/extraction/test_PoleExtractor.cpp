@@ -262,6 +262,22 @@ TEST(PoleExtractor, HugeAndTinyCoordinatesAreNoPoles) {
   EXPECT_EQ(report.invalid + report.outOfRange + report.outOfView, points.size());
 }
 
+// Where no range is too near: they have no direction, and the cube of their range is 0.
+TEST(PoleExtractor, PointsAtTheSensorAreNoPoles) {
+  SensorOptions sensor = sensorOptions("hdl32e");
+  sensor.minRange = 0;
+  const PointList yard = castYard(sensor);
+  PointList points;
+  for (const double range : {1e-12, 1e-15, 1e-25, 1e-40, 9e-4}) points.addPolar(1, 0, range);
+  points.add(0, 0, 0.5);
+  ExtractionReport before, report;
+  const auto expected = extract(yard, sensor, {}, &before);
+  const std::size_t near = points.size();
+  points.append(yard.view());
+  EXPECT_TRUE(same(expected, extract(points, sensor, {}, &report)));
+  EXPECT_EQ(report.outOfRange + report.invalid, before.outOfRange + before.invalid + near);
+}
+
 TEST(PoleExtractor, ScatteredPointsMakeAPoleInAThousandAtMost) {
   const SensorOptions sensor = sensorOptions("hdl64e");
   sim::Random random(6);

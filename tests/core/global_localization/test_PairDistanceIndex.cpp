@@ -74,5 +74,29 @@ TEST(PairDistanceIndex, KeepsAShareOfEveryDistanceInACrowd) {
     EXPECT_GT(pairs.between(low, low + 4).size(), 500u) << low;
 }
 
+/// A broken map: that each pole looks at all others would take minutes.
+TEST(PairDistanceIndex, LooksAtFewOfTensOfThousandsInReach) {
+  const std::vector<Eigen::Vector2d> poles = scatter(4, 20000, 30);
+  const PairDistanceIndex pairs(poles, 8, 40);
+  EXPECT_LE(pairs.size(), 20000u * 48u);
+  for (double low = 8; low < 32; low += 4)
+    EXPECT_GT(pairs.between(low, low + 4).size(), 10000u) << low;
+  // A pole asks for 48 partners; only those that are looked at are asked for.
+  std::vector<int> count(poles.size());
+  const PairDistanceIndex::Range all = pairs.between(0, 40);
+  for (const PairDistanceIndex::Pair* p = all.begin; p != all.end; ++p)
+    ++count[p->first], ++count[p->second];
+  EXPECT_LE(std::count_if(count.begin(), count.end(), [](int n) { return n > 48; }), 144)
+      << "12 by 12 cells of 2.5 m";
+}
+
+/// Beside a crowd, no pole loses its pairs with the rest; in it, all are too near to each other.
+TEST(PairDistanceIndex, ACrowdInOnePlaceHasPairsWithWhatIsFarther) {
+  std::vector<Eigen::Vector2d> poles = scatter(5, 5000, 2e-5);
+  poles.emplace_back(20, 0);
+  const PairDistanceIndex pairs(poles, 8, 40);
+  EXPECT_EQ(pairs.size(), 5000u);
+}
+
 }  // namespace
 }  // namespace polemcl::test_pair_distance_index

@@ -35,7 +35,7 @@ class Feed {
       input.matches.push_back(match);
     }
     input.estimate.covariance = Eigen::Vector3d(sigma * sigma, 1e-4, yaw * yaw).asDiagonal();
-    input.effectiveParticles = 500;
+    input.effectiveParticles = particles;
     input.modeShare = modeShare;
     input.odometryContradicted = contradicted;
     input.rival = rival;
@@ -55,7 +55,7 @@ class Feed {
   HealthMonitor monitor;
   Health last;
   double time = 1e9, period = 0.1, metres = 0.5, squared = 2, sigma = 0.02, yaw = 0.001,
-         modeShare = 1, confidence = 1;
+         modeShare = 1, confidence = 1, particles = 500;
   bool contradicted = false;
   RivalPose rival;
   NearPoles near;
@@ -75,6 +75,18 @@ TEST(LocalizationHealth, OkOnceMatchesOverSomeMetresBearThePoseOut) {
   feed.scans(6, 0.9).expect(State::ok, Reason::none);  // 5.5 m
   EXPECT_NEAR(feed.last.matchedShare, 0.9, 1e-12);
   EXPECT_NEAR(feed.last.innovation, 1, 1e-12);  // m² of 2 over 2 degrees of freedom
+}
+
+// The spread of a few says nothing: that of one particle is 0.
+TEST(LocalizationHealth, FewEffectiveParticlesAreDegraded) {
+  Feed feed(20, 0.9);
+  feed.expect(State::ok, Reason::none);
+  for (const double few : {29.9, 1.0, 0.0}) {
+    feed.particles = few;
+    feed.scan(0.9).expect(State::degraded, Reason::spread);
+  }
+  feed.particles = 30;
+  feed.scan(0.9).expect(State::ok, Reason::none);
 }
 
 TEST(LocalizationHealth, APoseThatASearchFoundIsBorneOutSooner) {

@@ -60,18 +60,20 @@ class WithinResult {
  public:
   using DistanceType = double;
   using IndexType = std::uint32_t;  // asked for by nanoflann 1.12
-  WithinResult(double squaredRadius, std::vector<PointHit>& out)
-      : m_limit(squaredRadius), m_out(out) {}
+  WithinResult(double squaredRadius, std::size_t most, std::vector<PointHit>& out)
+      : m_limit(squaredRadius), m_most(most), m_out(out) {}
   bool full() const { return true; }
   double worstDist() const { return widened(m_limit); }
   bool addPoint(double squaredDistance, std::uint32_t index) {
     if (squaredDistance < m_limit) m_out.push_back({index, squaredDistance});
-    return true;
+    return !isTooMuch();  // false ends the search
   }
+  bool isTooMuch() const { return m_out.size() > m_most; }
   void sort() {}  // within() sorts by index
 
  private:
   double m_limit;
+  std::size_t m_most;
   std::vector<PointHit>& m_out;
 };
 
@@ -112,13 +114,20 @@ PointHit KdTree2D::nearest(double x, double y, double radius) const {
 }
 
 void KdTree2D::within(double x, double y, double radius, std::vector<PointHit>& out) const {
+  withinUnlessMore(x, y, radius, size(), out);
+}
+
+bool KdTree2D::withinUnlessMore(double x, double y, double radius, std::size_t most,
+                                std::vector<PointHit>& out) const {
   out.clear();
-  if (size() == 0 || !std::isfinite(x) || !std::isfinite(y) || !(radius > 0)) return;
-  WithinResult result(radius * radius, out);
+  if (size() == 0 || !std::isfinite(x) || !std::isfinite(y) || !(radius > 0)) return true;
+  WithinResult result(radius * radius, most, out);
   const double query[2] = {x, y};
   m_impl->tree.findNeighbors(result, query, {});
+  if (result.isTooMuch()) return false;
   std::sort(out.begin(), out.end(),
             [](const PointHit& a, const PointHit& b) { return a.index < b.index; });
+  return true;
 }
 
 }  // namespace polemcl

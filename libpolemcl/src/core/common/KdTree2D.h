@@ -35,6 +35,10 @@ class KdTree2D {
   PointHit nearest(double x, double y, double radius) const;
   /// \brief All points with squared distance < radius², by ascending index; `out` is replaced.
   void within(double x, double y, double radius, std::vector<PointHit>& out) const;
+  /// \brief The same unless there are more than `most`: then false, and `out` is to be thrown away.
+  /// Looks at no more than that.
+  bool withinUnlessMore(double x, double y, double radius, std::size_t most,
+                        std::vector<PointHit>& out) const;
 
  private:
   struct Impl;

@@ -19,6 +19,8 @@ namespace polemcl {
 ///
 /// Memory is bounded by `poles · neighbours` pairs of 12 bytes. In crowds (parks) each pole keeps
 /// only that many of its neighbours, evenly taken from near to far, so that no distance is lost.
+/// Where more than 2048 poles are in reach, which is no real place, it takes them from one pole per
+/// cell of a grid: the time to build grows with the number of poles, not with its square.
 class PairDistanceIndex {
  public:
   struct Pair {

@@ -54,6 +54,7 @@ constexpr double kSameRival = 0.2, kSameRivalTurn = 0.02;
 constexpr double kLostSpread = 5;           // lost: greater σ of the position, m
 constexpr double kDegradedSpread = 0.2;     // degraded: greater σ of the position, m
 constexpr double kDegradedHeading = 0.052;  // degraded: greater σ of the heading, rad
+constexpr double kFewParticles = 30;        // degraded: fewer effective ones tell no spread
 constexpr double kInnovation = 4;    // degraded: greater mean m² per degree of freedom of matches
 constexpr double kModeShare = 0.95;  // degraded: smaller share of the weight at the estimate
 constexpr double kBlindSeconds = 2;  // degraded: no pole for a longer time, s
@@ -275,7 +276,9 @@ void HealthMonitor::judge(const HealthInput& input) {
                     m_longShare < lostShare && fewMatched;
   const bool unconfirmed =
       m_isEnough && !m_confirmed && m_driven >= kConfirmWithin && m_longShare < kConfirmShare;
-  const bool wide = m_health.spread > kDegradedSpread || m_health.spreadHeading > kDegradedHeading;
+  const bool wide = m_health.spread > kDegradedSpread ||
+                    m_health.spreadHeading > kDegradedHeading ||
+                    m_health.effectiveParticles < kFewParticles;
   const bool severalModes = m_health.modeShare < kModeShare;
   const bool blind = m_time - m_seenTime > kBlindSeconds || m_driven - m_seenDriven > kBlindMetres;
 

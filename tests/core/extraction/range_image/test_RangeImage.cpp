@@ -286,6 +286,35 @@ TEST(RangeImage, ClampedPointsOutsideTheViewGoToTheBorderRows) {
   EXPECT_EQ(image.point(3, 8), 1);
 }
 
+// The square of z is a denormal number, whose root is less than z: there is no angle.
+TEST(RangeImage, APointWithoutAnAngleIsOutOfView) {
+  PointList points;
+  points.add(0, 0, 4e-23);
+  View options = smallImage();
+  options.singlePrecision = true;
+  options.minRange = 0;
+  for (const auto details : {ExtractionDetails::paper, ExtractionDetails::authors}) {
+    options.details = details;
+    RangeImage image(4, 16);
+    const PointCounts counts = projectInto(image, points, options);
+    EXPECT_EQ(counts.outOfView, 1u);
+    EXPECT_EQ(counts.used, 0u);
+  }
+}
+
+// In single precision, the view from the horizon down to it has no width.
+TEST(RangeImage, AViewWithoutWidthHoldsNoPoint) {
+  PointList points;
+  points.add(10, 0, 0);
+  points.add(10, 0, 1);
+  View options = smallImage();
+  options.singlePrecision = true;
+  options.fovUp = 1e-300;
+  options.fovDown = 0;
+  RangeImage image(4, 16);
+  EXPECT_EQ(projectInto(image, points, options).outOfView, 2u);
+}
+
 TEST(RangeImage, ClampedTheSeamBelongsToTheLastColumn) {
   PointList points;
   points.add(-10, -0.f, 1);  // azimuth -180°: u = columns

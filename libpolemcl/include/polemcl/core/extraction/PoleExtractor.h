@@ -32,8 +32,8 @@ class POLEMCL_EXPORT PoleExtractor {
   PoleExtractor& operator=(PoleExtractor&&) noexcept;
 
   /// \brief Poles of one full turn, sorted by azimuth then range so that the order is defined.
-  /// \param points Cloud in the LiDAR's own frame, origin at its optical centre, z up
-  ///        (within the mounting tilt; see SensorOptions). The order of points does not matter.
+  /// \param points Cloud in the LiDAR's own frame, origin at its optical centre, z up (within the
+  ///        mounting tilt). Their order only tells which of equally near ones in a pixel counts.
   /// \param upright Shift of an upright pole along x and y per unit of height along z: the known
   /// lean of the lidar. Used by the scan-line method.
   /// \return Poles in that same frame. Heights are above the local ground. Centres of the scan-line

@@ -19,7 +19,7 @@ enum class HealthReason {
   searching,   ///< lost: no pose is known yet
   elsewhere,   ///< lost: the poles of the last metres fit another place of the map
   mismatch,    ///< lost or degraded: too few of the observed poles stand on the map
-  spread,      ///< lost or degraded: the pose is too uncertain
+  spread,      ///< lost or degraded: the pose is too uncertain, or too few particles tell it
   ambiguous,   ///< degraded: several places are about as likely
   converging,  ///< degraded: not yet confirmed since the start or since the last search
   timeGap,     ///< degraded: no scan for longer than `max_gap_s`, until 5 m of good matches

@@ -53,7 +53,8 @@ class Projection {
     return p.range >= m_minRange && p.range < static_cast<Real>(m_options.maxRange) &&
            p.z > m_minZ && p.z < m_maxZ;
   }
-  /// Row and column; may lie outside the image.
+  /// Row and column; may lie outside the image. The row is NaN where squares of coordinates are too
+  /// small for Real: then z may exceed the range.
   std::pair<double, double> pixel(const Point& p) const {
     const Real pi = static_cast<Real>(M_PI);
     const Real u = Real(0.5) * (1 - std::atan2(p.y, p.x) / pi);
@@ -84,12 +85,14 @@ PointCounts projectIn(const PointsView& points, const RangeImageOptions& options
       continue;
     }
     auto [v, u] = projection.pixel(p);
-    if (options.details == ExtractionDetails::authors) {
-      v = std::clamp(v, 0.0, image.rows() - 1.0);
-      u = std::min(u, image.columns() - 1.0);
-    } else if (v < 0 || v >= image.rows()) {
+    const bool clamps = options.details == ExtractionDetails::authors;
+    if (clamps ? std::isnan(v) : !(v >= 0 && v < image.rows())) {
       ++counts.outOfView;
       continue;
+    }
+    if (clamps) {
+      v = std::clamp(v, 0.0, image.rows() - 1.0);
+      u = std::min(u, image.columns() - 1.0);
     }
     const int row = static_cast<int>(v);
     const int column = static_cast<int>(u) % image.columns();  // azimuth -pi is azimuth pi

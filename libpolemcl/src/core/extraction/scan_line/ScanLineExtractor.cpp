@@ -13,6 +13,8 @@ namespace {
 
 /// m: points less than this above the ground say little about poles, and are most of a scan.
 constexpr float kClearance = 0.1f;
+/// m: nearer points are at the sensor, and have no direction. Products of such ranges are 0.
+constexpr float kAtSensor = 1e-3f;
 /// m above ground: below, a pole's foot is seldom free.
 constexpr float kFirmHeight = 0.6f;
 /// Candidates whose odds are lower before the fit are not fitted: 0.3 % of the poles found.
@@ -40,8 +42,8 @@ void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f&
                                 std::vector<PoleDetection>& poles, ExtractionReport& report) {
   m_upright = upright;
   const auto& dropped =
-      m_ground.build(points, static_cast<float>(m_sensorOptions.minRange), m_farthest,
-                     static_cast<float>(m_sensorOptions.height), upright);
+      m_ground.build(points, std::max(static_cast<float>(m_sensorOptions.minRange), kAtSensor),
+                     m_farthest, static_cast<float>(m_sensorOptions.height), upright);
   const auto& counts = m_lines.build(points, m_ground, kClearance);
   report.points = points.size;
   report.invalid = dropped.invalid;
