@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "core/mapping/IncrementalMerge.h"
@@ -80,6 +81,15 @@ TEST(IncrementalMerge, FarPolesAndTinyDistances) {
   ASSERT_EQ(poles.size(), 2u);
   EXPECT_EQ(poles[0].count, 2u);
   EXPECT_EQ(poles[1].count, 2u);
+}
+
+TEST(IncrementalMerge, CountsEndAtTheGreatestNumber) {
+  std::vector<MapPole> poles(1);
+  poles[0].count = std::numeric_limits<std::uint32_t>::max();
+  IncrementalMerge(poles, 0.5).insertScan(poles, {detectionAt(0.1, 0)});
+  ASSERT_EQ(poles.size(), 1u);
+  EXPECT_EQ(poles[0].count, std::numeric_limits<std::uint32_t>::max());
+  EXPECT_NEAR(poles[0].x, 0, 1e-9);
 }
 
 // Poles drift from cell to cell; a merge that begins with the poles of now is the oracle.

@@ -6,6 +6,7 @@
 
 #include "core/mapping/LandmarkFusion.h"
 #include "support/Poles.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_landmark_fusion {
 namespace {
@@ -173,6 +174,47 @@ TEST(LandmarkFusion, CopesWithACovarianceOfZero) {
   Eigen::Matrix2d covariance;
   EXPECT_NEAR(fusedCentre(observations, {0, 1, 2}, &covariance).x(), 1.05, 1e-9);
   EXPECT_TRUE(covariance.allFinite());
+}
+
+TEST(LandmarkFusion, CopesWithNoConfidence) {
+  std::vector<LandmarkObservation> observations{observation(1, 1), observation(1.01, 1),
+                                                observation(1.02, 1), observation(9, 9)};
+  for (const double confidence : {0.0, 1e-310, 1e-12}) {
+    observations[3].pole.confidence = confidence;
+    EXPECT_NEAR(fuse(observations, all(observations)).x, 1.01, 1e-6) << "it changes nothing";
+    const MapPole alone = fuse(observations, {3});
+    EXPECT_EQ(alone.x, 9);
+    EXPECT_TRUE(std::isfinite(alone.radius) && alone.covariance.allFinite());
+  }
+}
+
+// Its determinant is 0 in floating point, whatever small number is added to the diagonal.
+TEST(LandmarkFusion, CopesWithALongThinEllipse) {
+  for (const double variance : {1e3, 1e8, 1e12}) {
+    LandmarkObservation thin = observation(3, 3);
+    thin.pole.covariance = Eigen::Matrix2d::Constant(variance);
+    const MapPole alone = fuse({thin}, {0});
+    EXPECT_EQ(alone.x, 3);
+    EXPECT_TRUE(alone.covariance.allFinite()) << variance;
+    const MapPole two = fuse({thin, observation(4, 4)}, {0, 1});
+    EXPECT_NEAR(two.x, 4, 1e-4) << variance;
+    EXPECT_NEAR(two.y, 4, 1e-4) << variance;
+  }
+}
+
+TEST(LandmarkFusion, RefusesADetectionOfNumbersThatOverflow) {
+  const auto refused = [](const auto& spoil) {
+    PoleDetection pole = tests::detectionAt(1, 2);
+    spoil(pole);
+    return tests::messageOf([&] { checkScan({}, {pole}, "scan 7"); });
+  };
+  EXPECT_EQ(refused([](PoleDetection& p) { p.covariance *= 4e13; }), "no error");
+  EXPECT_HAS(refused([](PoleDetection& p) { p.covariance *= 1e160; }),
+             "pole 0 of scan 7 has a covariance above 1e12");
+  EXPECT_HAS(refused([](PoleDetection& p) { p.radius = 1.7e308; }), "a radius above 1e6 m");
+  EXPECT_HAS(refused([](PoleDetection& p) { p.top = 1e300; }), "a height above 1e9 m");
+  EXPECT_HAS(refused([](PoleDetection& p) { p.timeOffset = -1e160; }),
+             "a time offset above 1000 s");
 }
 
 TEST(LandmarkFusion, CertainSightingsGiveACertainPole) {

@@ -256,6 +256,16 @@ TEST(MapUpdater, AScanGivesAPoleOneDetection) {
   EXPECT_EQ(at(map, 10, 5).pole.count, 30u + 40u);
 }
 
+TEST(MapUpdater, CountsEndAtTheGreatestNumber) {
+  constexpr auto kAll = std::numeric_limits<std::uint32_t>::max();
+  LandmarkMap map = kept({{10, 5}});
+  map.poles[0].pole.count = map.poles[0].history.seen = kAll - 3;
+  const LandmarkMap after = updatedBy(map, drive({{10, 5}}));
+  ASSERT_EQ(after.poles.size(), 1u);
+  EXPECT_EQ(after.poles[0].pole.count, kAll);
+  EXPECT_EQ(after.poles[0].history.seen, kAll);
+}
+
 TEST(MapUpdater, TwoKeptPolesInOneGateBecomeOne) {
   // The old map has the pole twice; scans show one, now nearer to the one, now to the other, so
   // that each is found often enough to stay.

@@ -272,6 +272,9 @@ TEST_F(PoleMapFileTest, RefusesMoreBadInput) {
     p.covariance << xx, xy, yx, yy;
     expectIn(writeRefusal(p), "pole 1", "positive semidefinite");
   }
+  MapPole p = variedMapPole(0, 0);
+  p.covariance = 1.7e308 * Eigen::Matrix2d::Identity();
+  expectIn(writeRefusal(p), "pole 1", "the covariance is above 1e12");
 }
 
 TEST_F(PoleMapFileTest, RefusesEveryPrefixOfAFile) {

@@ -358,6 +358,27 @@ TEST_F(PoleLocalizationFaults, BadScansAreRefusedByNameAndChangeNothing) {
   PoleScan nowhere = frames[10];
   nowhere.poles_robot.at(1).y = NAN;
   refusedScan(nowhere, "pole 1 has");
+  const auto refusedWith = [&](const char* word, const auto& spoil) {
+    PoleScan bad = frames[10];
+    spoil(bad);
+    refusedScan(bad, word);
+  };
+  refusedWith("the velocity moves pole 1 by", [](PoleScan& s) {
+    s.velocity = Velocity{1e8, 0, 0};
+    s.poles_robot.at(1).timeOffset = -11;
+  });
+  for (const double speed : {double{NAN}, 1e300, -2e9}) {
+    refusedWith("the velocity is not", [&](PoleScan& s) { s.velocity = Velocity{speed, 0, 0}; });
+    refusedWith("the velocity is not", [&](PoleScan& s) { s.velocity = Velocity{0, 0, speed}; });
+  }
+  refusedWith("the sensor pose is not", [](PoleScan& s) { s.pose_robot_sensor.yaw = NAN; });
+  refusedWith("the sensor pose is not", [](PoleScan& s) { s.pose_robot_sensor.x = INFINITY; });
+  refusedWith("turns by", [](PoleScan& s) { s.motion->mean.yaw = 1e200; });
+  refusedWith("pole 0 has a radius", [](PoleScan& s) {
+    s.poles_robot.at(0).radius = 1e300;
+    s.poles_robot.at(0).turnRate = 60;
+  });
+  refusedWith("pole 0 has a time", [](PoleScan& s) { s.poles_robot.at(0).timeOffset = 1e160; });
   PoleScan early = frames[10];
   early.time = frames[8].time;
   EXPECT_THROW(localization.step(early), Error);

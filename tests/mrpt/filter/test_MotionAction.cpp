@@ -93,6 +93,8 @@ TEST(MotionAction, RefusesWhatIsNotFinite) {
 TEST(MotionAction, RefusesBadInput) {
   EXPECT_HAS(refusal([](auto& m) { m.mean.x = 8000, m.mean.y = -8000; }), "11313.7 m long");
   EXPECT_EQ(refusal([](auto& m) { m.mean.x = 9999; }), "no error");
+  EXPECT_EQ(refusal([](auto& m) { m.mean.yaw = -999; }), "no error");
+  EXPECT_HAS(refusal([](auto& m) { m.mean.yaw = 1e200; }), "turns by 1e+200 rad; at most 1000 rad");
   EXPECT_HAS(refusal([](auto& m) { m.covariance(0, 1) += 1e-6; }), "not symmetric");
   EXPECT_HAS(refusal([](auto& m) { m.covariance(1, 1) = -0.02; }), "negative eigenvalue");
   // Positive variances, but a correlation greater than one.

@@ -361,6 +361,16 @@ TEST(PoleParticleFilter, APoleWithAFaultIsRefused) {
                  "scan at 100.000000 s: pole 0 has a confidence outside [0, 1]");
 }
 
+/// MRPT would pass on its own exception, with a call stack of several lines.
+TEST(PoleParticleFilter, ErrorsOfTheUpdateComeThroughMrpt) {
+  const PoleStreet street = makeStreet({});
+  const auto map = std::make_shared<CPoleMap>(*street.map);
+  PoleParticleFilter localizer(map, {}, 1);
+  localizer.start(at(street.truth[0]));
+  map->likelihoodOptions.gate = -1;  // refused by the likelihood
+  EXPECT_REFUSED(localizer.step(street.frames[0]), "gate_m");
+}
+
 TEST(PoleParticleFilter, RefusesToStepBeforeTheStart) {
   PoleParticleFilter localizer(smallMap(), {}, 1);
   EXPECT_THROW(localizer.step(emptyFrame(0)), Error);

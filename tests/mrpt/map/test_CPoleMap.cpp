@@ -16,7 +16,7 @@
 #include "core/common/PoleIndex.h"
 #include "io/map/PoleMapFile.h"
 #include "io/map/PoleTables.h"
-#include "support/ExpectHas.h"
+#include "support/Refusal.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_cpole_map {
@@ -104,6 +104,8 @@ TEST(CPoleMap, RefusesBadPoles) {
   EXPECT_THROW(map.setPoles({bad}), Error);
   bad.covariance << 1, 2, 2, 1;
   EXPECT_THROW(map.setPoles({bad}), Error);
+  bad.covariance = 1.7e308 * Eigen::Matrix2d::Identity();
+  EXPECT_REFUSED(map.setPoles({bad}), "pole 0: the covariance must be at most 1e12 m²");
   EXPECT_EQ(map.poles().size(), 3u);  // unchanged
 }
 

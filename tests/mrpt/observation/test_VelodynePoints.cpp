@@ -199,5 +199,23 @@ TEST(VelodynePoints, NeedACalibration) {
   EXPECT_REFUSED(read(scan), "a calibration of 0 lasers; allowed are 16, 32 and 64");
 }
 
+TEST(VelodynePoints, NeedACalibrationOfPossibleNumbers) {
+  std::mt19937 random(3);
+  Scan scan = scanOf("HDL64", {randomPacket(random, 32, false)});
+  const std::size_t count = read(scan).x.size();
+  auto& laser = scan.calibration.laser_corrections[7];
+  for (const double correction : {360.0, -360.0}) {
+    laser.azimuthCorrection = correction;
+    EXPECT_EQ(read(scan).x.size(), count);
+  }
+  laser.azimuthCorrection = 1e9;
+  EXPECT_REFUSED(read(scan), "laser 7 has an azimuthCorrection of 1e+09; allowed are -360 to 360");
+  laser.azimuthCorrection = NAN;
+  EXPECT_REFUSED(read(scan), "laser 7 has an azimuthCorrection of nan");
+  laser.azimuthCorrection = 0;
+  laser.distanceCorrection = INFINITY;
+  EXPECT_REFUSED(read(scan), "laser 7 has a correction that is not finite");
+}
+
 }  // namespace
 }  // namespace polemcl::test_velodyne_points

@@ -446,10 +446,13 @@ TEST_F(PoleSequenceTest, RefusesBadMotions) {
              "before scan 1: the covariance of the odometry is not positive semidefinite");
 }
 
-TEST_F(PoleSequenceTest, RefusesScansWithoutTime) {
+TEST_F(PoleSequenceTest, RefusesScansWithoutTimeOrSensorPose) {
   CObservationPoles scan = poles(1);
   scan.timestamp = INVALID_TIMESTAMP;
   EXPECT_HAS(bench.refusal(frame(scan)), "scan 0 has no time");
+  scan = poles(1);
+  scan.setSensorPose(mrpt::poses::CPose3D(NAN, 0, 0, 0, 0, 0));
+  EXPECT_HAS(bench.refusal(frame(scan)), "scan 0: the sensor pose of its poles is not a finite");
 }
 
 TEST_F(PoleSequenceTest, RefusesBadOptions) {

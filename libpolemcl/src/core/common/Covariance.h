@@ -13,6 +13,10 @@ namespace polemcl {
 bool isCovariance(const Eigen::Matrix2d& matrix);
 bool isCovariance(const Eigen::Matrix3d& matrix);
 
+/// \brief Greater sums of a pole's variances are errors, m². Products of smaller ones do not
+/// overflow.
+constexpr double kGreatestVariance = 1e12;
+
 /// \brief Whether the matrix is a covariance that can be inverted.
 bool isDefiniteCovariance(const Eigen::Matrix2d& matrix);
 bool isDefiniteCovariance(const Eigen::Matrix3d& matrix);

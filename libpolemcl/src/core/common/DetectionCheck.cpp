@@ -19,6 +19,11 @@ const char* faultOf(const PoleDetection& pole) {
   if (!(pole.confidence >= 0 && pole.confidence <= 1)) return "a confidence outside [0, 1]";
   if (!isCovariance(pole.covariance))
     return "a covariance that is not symmetric positive semidefinite";
+  if (pole.covariance.trace() > kGreatestVariance) return "a covariance above 1e12 m²";
+  if (std::abs(pole.radius) > 1e6) return "a radius above 1e6 m";
+  if (std::max(std::abs(pole.bottom), std::abs(pole.top)) > PoleIndex::farthest)
+    return "a height above 1e9 m";
+  if (std::abs(pole.timeOffset) > 1000) return "a time offset above 1000 s";
   return nullptr;
 }
 

@@ -10,7 +10,7 @@ namespace polemcl {
 
 /// \brief What is wrong with a detection, e.g. "a confidence outside [0, 1]"; null if nothing is.
 /// All numbers must be finite, x and y at most PoleIndex::farthest, the confidence in [0, 1], the
-/// covariance one by isCovariance().
+/// covariance one by isCovariance(), and no number so great that sums or products overflow.
 const char* faultOf(const PoleDetection& pole);
 
 /// Most poles of a scan that maps and localization use. It limits the time of each.

@@ -8,7 +8,7 @@ namespace polemcl {
 void bind(Binder& b, LikelihoodOptions& o) {
   b.section("likelihood", "How well detections fit a map at a pose");
   b.tier(Tier::sensor);
-  b.number("sigma_m", o.sigma, Range::above(0), "m",
+  b.number("sigma_m", o.sigma, Range::between(1e-6, 1e3), "m",
            "standard deviation of a detection from its map pole; with weighted: beyond both "
            "covariances");
   b.tier(Tier::tuning);
@@ -17,7 +17,7 @@ void bind(Binder& b, LikelihoodOptions& o) {
   b.number("far_outlier", o.farOutlier, {1e-3, 1, false, false}, "",
            "model = mixture: weight of such a detection without a match, where one at a map pole "
            "weighs 1; 1: all alike");
-  b.number("gate_m", o.gate, Range::above(0), "m", "farther poles are no match");
+  b.number("gate_m", o.gate, Range::aboveUpTo(0, 1e6), "m", "farther poles are no match");
   b.tier(Tier::expert);
   b.choice<LikelihoodModel>("model", o.model,
                             {{LikelihoodModel::paper, "paper"},

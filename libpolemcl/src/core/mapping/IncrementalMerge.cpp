@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/common/GreedyAssignment.h"
@@ -20,7 +21,7 @@ void absorb(MapPole& pole, const PoleDetection& seen) {
   // Covariance of the mean of n + 1 independent detections; the pole's covariance sums up n of
   // them.
   pole.covariance = (n * n * pole.covariance + seen.covariance) / (all * all);
-  ++pole.count;
+  if (pole.count < std::numeric_limits<std::uint32_t>::max()) ++pole.count;
 }
 
 MapPole newPole(const PoleDetection& seen) {

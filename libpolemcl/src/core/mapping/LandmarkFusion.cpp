@@ -15,6 +15,16 @@ namespace {
 constexpr double kMedianOfTwo = 1.386;  ///< median of chi² with two degrees of freedom
 constexpr double kEllipse99 = 9.21;     ///< its 99 % quantile
 
+/// Added to variances, m².
+constexpr double kLeastVariance = 1e-8;
+/// A detection without any confidence counts so little that it changes nothing, but alone it has a
+/// place.
+constexpr double kLeastConfidence = 1e-9;
+
+double weightOf(const PoleDetection& pole) {
+  return std::max(pole.confidence, kLeastConfidence);
+}
+
 struct Weighted {
   std::uint32_t member;
   Eigen::Vector2d offset;       ///< from the first member: no digits are lost far from the origin
@@ -29,9 +39,13 @@ std::vector<Weighted> weigh(const std::vector<LandmarkObservation>& observations
   for (const std::uint32_t member : members) {
     const PoleDetection& pole = observations[member].pole;
     // A tenth of a millimetre: a zero covariance would give an infinite weight.
-    const Eigen::Matrix2d covariance = pole.covariance + 1e-8 * Eigen::Matrix2d::Identity();
+    Eigen::Matrix2d covariance = pole.covariance + kLeastVariance * Eigen::Matrix2d::Identity();
+    // In a far longer ellipse, rounding takes that away again.
+    const double trace = covariance.trace();
+    if (!(covariance.determinant() > 1e-9 * trace * trace))
+      covariance += 1e-8 * trace * Eigen::Matrix2d::Identity();
     weighted.push_back(
-        {member, Eigen::Vector2d(pole.x, pole.y) - origin, pole.confidence * covariance.inverse()});
+        {member, Eigen::Vector2d(pole.x, pole.y) - origin, weightOf(pole) * covariance.inverse()});
   }
   return weighted;
 }
@@ -148,7 +162,7 @@ MapPole fuse(const std::vector<LandmarkObservation>& observations,
   double weight = 0, radius = 0;
   for (const std::uint32_t member : inliers) {
     const PoleDetection& seen = observations[member].pole;
-    const double w = seen.confidence / (seen.covariance.trace() + 1e-8);
+    const double w = weightOf(seen) / (seen.covariance.trace() + kLeastVariance);
     weight += w;
     radius += w * seen.radius;
   }

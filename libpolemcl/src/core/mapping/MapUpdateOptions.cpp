@@ -12,11 +12,11 @@ void bind(Binder& b, MapUpdateOptions& o) {
            "a pole that is surely farther than this from its place has been moved");
   b.number("lifetime_days", o.lifetimeDays, Range::above(0), "days",
            "mean time that a pole stands; its existence decays between sessions");
-  b.number("align_sigma_m", o.alignSigma, Range::atLeast(0), "m",
+  b.number("align_sigma_m", o.alignSigma, Range::between(0, 1000), "m",
            "standard deviation of a session's positions before it is aligned to the map; 0: it is "
            "not aligned");
   b.tier(Tier::expert);
-  b.number("session_sigma_m", o.sessionSigma, Range::atLeast(0), "m",
+  b.number("session_sigma_m", o.sessionSigma, Range::between(0, 1000), "m",
            "standard deviation of one session's positions against those of others");
 }
 

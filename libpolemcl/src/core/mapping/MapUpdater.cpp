@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <tuple>
 
@@ -28,6 +29,11 @@ constexpr double kMaxSigma = 0.25;
 constexpr double kFarEllipse = 13.8;        ///< 99.9 % of squared distances, 2 degrees of freedom
 constexpr std::uint32_t kWeightedTo = 200;  ///< observations: older ones do not outweigh today's
 constexpr double kWithoutHistory = 0.9;     ///< existence of a pole of an old map
+
+/// Counts of files may be any.
+void increase(std::uint32_t& count, std::uint32_t more) {
+  count += std::min(more, std::numeric_limits<std::uint32_t>::max() - count);
+}
 
 void sortByPlace(std::vector<LandmarkRecord>& poles) {
   std::stable_sort(poles.begin(), poles.end(),
@@ -125,8 +131,8 @@ void Update::applyLikelihoods() {
     m_counts.nearOnMap += record.present && today.wasNear;
     m_counts.foundOnMap += record.present && likelihood.found() > 0;
     record.history.existence = updated(record.history.existence, likelihood.logRatio());
-    record.history.seen += likelihood.found();
-    record.history.missed += likelihood.missed();
+    increase(record.history.seen, likelihood.found());
+    increase(record.history.missed, likelihood.missed());
     for (const std::uint32_t observation : today.observations)
       noteSeen(record.history, m_session.time(m_session.observations()[observation].scan));
   }
@@ -146,7 +152,7 @@ bool Update::movePlace(LandmarkRecord& record, const MapPole& seen) const {
                      seen.count >= static_cast<std::uint32_t>(m_options.minSeen) &&
                      step.norm() > m_options.moved && squared > kFarEllipse;
   const std::uint32_t before = moved ? 0 : std::min(pole.count, kWeightedTo);
-  const double share = static_cast<double>(seen.count) / (before + seen.count);
+  const double share = seen.count / (static_cast<double>(before) + seen.count);
   const auto blend = [&](double& value, double now) { value += share * (now - value); };
   blend(pole.radius, seen.radius);
   blend(pole.bottom, seen.bottom);
@@ -159,7 +165,7 @@ bool Update::movePlace(LandmarkRecord& record, const MapPole& seen) const {
   pole.x = place.x();
   pole.y = place.y();
   pole.covariance = symmetrized(covariance);
-  pole.count += seen.count;
+  increase(pole.count, seen.count);
   return moved;
 }
 

@@ -12,13 +12,13 @@ void bind(Binder& b, PoleMapOptions& o) {
            "detections with a lower confidence are not used; scans are searched down to it; "
            "0: to that of [scan_line]");
   b.tier(Tier::tuning);
-  b.number("section_length_m", o.sectionLength, Range::above(0), "m",
+  b.number("section_length_m", o.sectionLength, Range::atLeast(0.01), "m",
            "length of a section of the path");
   b.flag("every_scan", o.everyScan,
          "true: all scans are used; false: the middle one of each section (paper)");
   b.number("min_share", o.minShare, Range::between(0, 1), "",
            "least share of the sections within 15 m that saw the pole, see counting");
-  b.number("pose_sigma_m", o.poseSigma, Range::atLeast(0), "m",
+  b.number("pose_sigma_m", o.poseSigma, Range::between(0, 1000), "m",
            "standard deviation of the true positions");
   b.angleDeg("heading_sigma_deg", o.headingSigma, Range::between(0, 57),
              "standard deviation of the true headings; far detections count less");

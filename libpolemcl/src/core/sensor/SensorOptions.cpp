@@ -54,7 +54,7 @@ void bindTiming(Binder& b, ScanTiming& timing) {
   b.choice("turn", timing.turn, turnNames(),
            "how the LiDAR turns while it measures a scan, seen from above; compensated: the scans "
            "are already corrected for motion; auto: as the rawlog says, else compensated");
-  b.number("turn_s", timing.seconds, Range::aboveUpTo(0, 10), "s", "duration of a turn");
+  b.number("turn_s", timing.seconds, Range::between(0.001, 10), "s", "duration of a turn");
   b.angleDeg("cut_deg", timing.cut, Range::between(-360, 360),
              "azimuth at which a scan begins and ends, frame of the clouds");
   b.number("stamp_turn", timing.stamp, Range::between(0, 1), "turns",

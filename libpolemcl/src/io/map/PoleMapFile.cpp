@@ -39,6 +39,7 @@ const char* fault(const MapPole& pole) {
   if (!pole.covariance.allFinite()) return "the covariance is not finite";
   if (!isCovariance(pole.covariance))
     return "the covariance is not symmetric positive semidefinite";
+  if (pole.covariance.trace() > kGreatestVariance) return "the covariance is above 1e12 m²";
   return nullptr;
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/common/Covariance.h"
 #include "core/common/DetectionCheck.h"
+#include "core/common/PoleIndex.h"
 
 namespace polemcl {
 
@@ -36,11 +37,34 @@ struct Sigmas {
 
 void requireFinite(const PoseWithCovariance& motion) {
   if (!isFinite(motion)) throw Error("the motion is not finite: check the odometry");
-  if (metresOf(motion) <= kMaxMotionStep) return;
   std::ostringstream text;
-  text << "the motion is " << metresOf(motion) << " m long; at most " << kMaxMotionStep
-       << " m from one scan to the next are allowed: check the odometry";
+  if (!(metresOf(motion) <= kMaxMotionStep))
+    text << "the motion is " << metresOf(motion) << " m long; at most " << kMaxMotionStep << " m";
+  else if (!(std::abs(motion.mean.yaw) <= kMaxMotionTurn))
+    text << "the motion turns by " << motion.mean.yaw << " rad; at most " << kMaxMotionTurn
+         << " rad";
+  else
+    return;
+  text << " from one scan to the next are allowed: check the odometry";
   throw Error(text.str());
+}
+
+void requireVelocity(const Velocity& velocity, const std::vector<PoleDetection>& poles,
+                     const std::string& where) {
+  if (!(std::abs(velocity.x) <= kMaxVelocity && std::abs(velocity.y) <= kMaxVelocity &&
+        std::abs(velocity.yaw) <= kMaxVelocity))
+    throw Error(where +
+                ": the velocity is not finite, or above 1e9 m/s or rad/s: check the odometry");
+  const double speed = std::hypot(velocity.x, velocity.y);
+  for (std::size_t i = 0; i < poles.size(); ++i)
+    if (speed * std::abs(poles[i].timeOffset) > PoleIndex::farthest)
+      throw Error(where + ": the velocity moves pole " + std::to_string(i) +
+                  " by more than 1e9 m: check the odometry");
+}
+
+bool isUsable(const Pose2D& pose) {
+  return std::abs(pose.x) <= PoleIndex::farthest && std::abs(pose.y) <= PoleIndex::farthest &&
+         std::isfinite(pose.yaw);
 }
 
 void requireCovariance(const Eigen::Matrix3d& covariance) {
@@ -100,6 +124,9 @@ void requireStep(const PoleScan& scan, std::optional<double> before) {
   for (std::size_t i = 0; i < scan.poles_robot.size(); ++i)
     if (const char* fault = faultOf(scan.poles_robot[i]))
       throw Error("scan at " + when + ": pole " + std::to_string(i) + " has " + fault);
+  if (scan.velocity) requireVelocity(*scan.velocity, scan.poles_robot, "scan at " + when);
+  if (!isUsable(scan.pose_robot_sensor))
+    throw Error("scan at " + when + ": the sensor pose is not finite, or more than 1e9 m away");
   if (!before) return;
   if (!scan.motion)
     throw Error("no motion leads to the scan at " + when +

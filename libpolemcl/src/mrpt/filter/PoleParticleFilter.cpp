@@ -11,6 +11,7 @@
 
 #include "core/common/Binder.h"
 #include "core/common/SimdMath.h"
+#include "mrpt/common/MrptReason.h"
 #include "mrpt/filter/MotionAction.h"
 #include "mrpt/filter/ParticleDraws.h"
 
@@ -158,7 +159,11 @@ PoseWithCovariance PoleParticleFilter::step(const PoleScan& frame, const NewShar
   const auto action = m_time ? makeMotionAction(*frame.motion, m_options) : nullptr;
   m_newShares = shares;
   const GeneratorLoan loan(m_generator);
-  m_filter.executeOn(*this, action.get(), &scan);
+  try {
+    m_filter.executeOn(*this, action.get(), &scan);
+  } catch (const std::exception& error) {  // MRPT's own, with the call stack
+    throw Error(mrptReason(error.what()));
+  }
   m_time = frame.time;
   return m_estimate;
 }

@@ -52,6 +52,8 @@ void requireUsable(const Pole& pole, std::size_t i) {
   if (!isCovariance(pole.covariance))
     throw Error("pole " + std::to_string(i) +
                 ": the covariance must be symmetric positive semidefinite");
+  if (pole.covariance.trace() > kGreatestVariance)
+    throw Error("pole " + std::to_string(i) + ": the covariance must be at most 1e12 m²");
 }
 
 }  // namespace

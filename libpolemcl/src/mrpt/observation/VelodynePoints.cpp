@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
+#include <string>
 
 #include <polemcl/core/common/Types.h>
 
@@ -98,7 +100,7 @@ class Reader {
     const double level =
         distance * calibration.cosVertCorrection - offset * calibration.sinVertCorrection;
     const auto [cosine, sine] =
-        directions()[static_cast<std::size_t>((corrected + kFullTurn) % kFullTurn)];
+        directions()[static_cast<std::size_t>((corrected % kFullTurn + kFullTurn) % kFullTurn)];
     m_points.x.push_back(static_cast<float>(level * cosine + aside * sine));
     m_points.y.push_back(static_cast<float>(aside * cosine - level * sine));
     m_points.z.push_back(static_cast<float>(distance * calibration.sinVertCorrection +
@@ -111,6 +113,23 @@ class Reader {
   VelodynePoints& m_points;
 };
 
+/// A rawlog may hold any numbers.
+void requireCalibration(const mrpt::obs::VelodyneCalibration& calibration) {
+  for (std::size_t i = 0; i < calibration.laser_corrections.size(); ++i) {
+    const auto& laser = calibration.laser_corrections[i];
+    const std::string where = "a Velodyne scan has a calibration whose laser " + std::to_string(i);
+    if (!std::isfinite(laser.distanceCorrection + laser.verticalOffsetCorrection +
+                       laser.horizontalOffsetCorrection + laser.sinVertCorrection +
+                       laser.cosVertCorrection))
+      throw Error(where + " has a correction that is not finite; record with the right one");
+    if (std::abs(laser.azimuthCorrection) <= 360) continue;
+    std::ostringstream text;
+    text << where << " has an azimuthCorrection of " << laser.azimuthCorrection
+         << "; allowed are -360 to 360 degrees: record with the right one";
+    throw Error(text.str());
+  }
+}
+
 }  // namespace
 
 void readVelodynePackets(const Scan& scan, VelodynePoints& points) {
@@ -118,6 +137,7 @@ void readVelodynePackets(const Scan& scan, VelodynePoints& points) {
   if (lasers != 16 && lasers != 32 && lasers != 64)
     throw Error("a Velodyne scan has a calibration of " + std::to_string(lasers) +
                 " lasers; allowed are 16, 32 and 64");
+  requireCalibration(scan.calibration);
   for (auto* values : {&points.x, &points.y, &points.z}) values->clear();
   points.laser.clear();
   Reader reader(scan, points);

@@ -12,6 +12,7 @@
 #include <map>
 
 #include "core/common/DetectionCheck.h"
+#include "mrpt/observation/LidarFrame.h"
 #include "mrpt/observation/ScanFusion.h"
 #include "mrpt/rawlog/EntrySource.h"
 #include "mrpt/rawlog/ScanSource.h"
@@ -33,6 +34,14 @@ CObservationPoles::Ptr noPolesOf(const mrpt::obs::CObservation& scan) {
   none->sensorLabel = scan.sensorLabel;
   scan.getSensorPose(none->sensorPose);
   return none;
+}
+
+/// Files may hold any numbers.
+void requirePose(const CObservationPoles& stored) {
+  if (!isPose(stored.sensorPose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen()))
+    throw Error(
+        "the sensor pose of its poles is not a finite place and a rotation; extract the poles "
+        "again");
 }
 
 /// One scan in the pipeline. An error travels in the scan's position: the first error of the file
@@ -133,7 +142,10 @@ Stream::Extractors Stream::extractorsFor(const SequenceOptions& options) {
 
 /// The poles of one LiDAR's scan; adds to the report what the extraction did.
 CObservationPoles::Ptr Stream::polesOf(const LidarScan& part, Task& task) {
-  if (auto stored = std::dynamic_pointer_cast<CObservationPoles>(part.observation)) return stored;
+  if (auto stored = std::dynamic_pointer_cast<CObservationPoles>(part.observation)) {
+    requirePose(*stored);
+    return stored;
+  }
   ObservationPoleExtractor& extraction = m_extractions.local()[part.lidar];
   // By number, so that the result does not depend on the threads.
   extraction.setRecordedTiming(task.timing);
