@@ -72,10 +72,13 @@ sanitize() {
 
 threads() {
   build threads
+  "$top/tests/sanitize/tbb.sh" "$top/build-threads/tbb"
   # What the symbolizer cannot read, it would say on the screen of a program, which tests look at.
   printf '#!/bin/sh\nexec /usr/bin/llvm-symbolizer "$@" 2>/dev/null\n' >"$top/build-threads/llvm-symbolizer"
   chmod +x "$top/build-threads/llvm-symbolizer"
-  TSAN_OPTIONS="suppressions=$top/tests/sanitize/threads.txt external_symbolizer_path=$top/build-threads/llvm-symbolizer" \
+  # It tells of two accesses only while it remembers the earlier one: history_size is the most that it can.
+  LD_LIBRARY_PATH=$top/build-threads/tbb/lib \
+    TSAN_OPTIONS="history_size=7 suppressions=$top/tests/sanitize/threads.txt external_symbolizer_path=$top/build-threads/llvm-symbolizer" \
     run_tests "$top/build-threads" \
     --tests-regex "^($(paste -sd '|' "$top/tests/sanitize/threaded.txt"))(\.|$)"
 }
