@@ -45,7 +45,9 @@ OutputFolder::OutputFolder(const fs::path& target, const std::string& what,
     : m_target(withoutSlash(target)), m_what(what), m_marker(marker), m_known(known) {
   try {
     refuseForeign();
-    io::removeLeftovers(m_target);
+    io::removeLeftovers(m_target, [&](const fs::path& path) {
+      return fs::is_directory(fs::symlink_status(path)) && foreignIn(path, true).empty();
+    });
     for (unsigned number = 0;; ++number) {
       m_temporary = m_target;
       m_temporary += "." + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp";
@@ -64,20 +66,28 @@ OutputFolder::~OutputFolder() {
   fs::remove_all(m_temporary, ignored);
 }
 
+/// The first entry below a folder that is no output; empty without one.
+std::string OutputFolder::foreignIn(const fs::path& folder, bool isUnderWay) const {
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().lexically_relative(folder).string();
+    const auto fits = [&](const std::string& pattern) {
+      return ::fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME) == 0 ||
+             (isUnderWay && io::isTemporaryOf(pattern, name));
+    };
+    if (std::none_of(m_known.begin(), m_known.end(), fits)) return name;
+  }
+  return {};
+}
+
 void OutputFolder::refuseForeign() const {
   const std::string advice = ", so it is not replaced; choose another folder or remove it";
   if (!fs::exists(fs::symlink_status(m_target))) return;
   if (!fs::is_directory(fs::symlink_status(m_target)))
     throw Error(m_target.string() + ": exists and is not a folder" + advice);
   if (fs::is_empty(m_target)) return;
-  for (const auto& entry : fs::recursive_directory_iterator(m_target)) {
-    const std::string name = entry.path().lexically_relative(m_target).string();
-    const auto fits = [&](const std::string& pattern) {
-      return ::fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME) == 0;
-    };
-    if (std::none_of(m_known.begin(), m_known.end(), fits))
-      throw Error(m_target.string() + ": holds more than " + m_what + " (" + name + ")" + advice);
-  }
+  const std::string foreign = foreignIn(m_target, false);
+  if (!foreign.empty())
+    throw Error(m_target.string() + ": holds more than " + m_what + " (" + foreign + ")" + advice);
   if (!fs::exists(m_target / m_marker))
     throw Error(m_target.string() + ": is no earlier output (no " + m_marker + ")" + advice);
 }

@@ -14,7 +14,7 @@ namespace polemcl::apps {
 /// beside its place under a temporary name ending in `.tmp`, then renamed. An earlier output stays
 /// until that moment; on a file system that cannot exchange two folders, a process killed in it
 /// leaves the earlier one as `….tmp.old`. Removed again unless committed; what a killed process
-/// left is removed by the next one for the same target.
+/// left is removed by the next one for the same target, unless it holds anything else.
 class OutputFolder {
  public:
   /// \param target Where the folder shall appear. It replaces an empty folder, and an earlier
@@ -35,6 +35,7 @@ class OutputFolder {
   void commit();
 
  private:
+  std::string foreignIn(const std::filesystem::path& folder, bool isUnderWay) const;
   void refuseForeign() const;
 
   std::filesystem::path m_target, m_temporary;

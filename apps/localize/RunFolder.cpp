@@ -83,10 +83,15 @@ void RunFolder::protect(const fs::path& input) const {
 void RunFolder::requireFreeNames() const {
   for (const auto& entry : entriesOf(m_staging)) {
     const fs::path target = m_folder / entry.filename();
-    if (fs::is_directory(fs::symlink_status(target)) && !isOfARun(target))
-      throw Error(
-          target.string() +
-          ": is a folder, and a result has to go there; move it away. Nothing was replaced");
+    const fs::file_status there = fs::symlink_status(target);
+    const char* obstacle = nullptr;
+    if (fs::is_directory(there) && !isOfARun(target)) obstacle = "a folder, and a result";
+    if (fs::is_directory(entry) && fs::exists(there) && !fs::is_directory(there))
+      obstacle = fs::is_symlink(there) ? "a link, and a folder of results"
+                                       : "a file, and a folder of results";
+    if (obstacle)
+      throw Error(target.string() + ": is " + obstacle +
+                  " has to go there; move it away. Nothing was replaced");
   }
 }
 

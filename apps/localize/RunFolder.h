@@ -34,7 +34,7 @@ class RunFolder {
   /// `run_NN_errors.csv`, `run_NN_cov.csv`, `run_NN_health.csv`, folders `run_NN_scenes`) of old
   /// results away and moves the new files in, `summary.json` last: while it is there, the folder is
   /// complete. \throws Error when that fails; before anything is taken away where a folder stands
-  /// in the place of a result.
+  /// in the place of a result, or a file or link in that of a folder of results.
   void commit();
 
  private:

@@ -12,12 +12,15 @@
 
 #include <polemcl/core/common/Types.h>
 #include "io/file/CsvTable.h"
+#include "io/file/InputFile.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
 namespace {
 
 using Columns = std::vector<std::string>;
+
+constexpr std::size_t kLongestName = 256;  ///< bytes: each entry keeps the names of all columns
 
 Columns columnsOf(const io::CsvTable& table, const Columns& asked,
                   const std::filesystem::path& file) {
@@ -74,6 +77,8 @@ class OsmReader {
   OsmReader& operator=(const OsmReader&) = delete;
 
   std::vector<InventoryEntry> read() {
+    if (const char* why = io::whyNoInput(m_file))
+      throw Error("cannot read " + m_file.string() + ": " + why);
     std::ifstream stream(m_file, std::ios::binary);
     if (!stream) throw Error("cannot read " + m_file.string());
     std::array<char, 65536> block;
@@ -120,11 +125,13 @@ class OsmReader {
     if (name == "osm") {
       m_isOsm = true;
     } else if (name == "node" || name == "way") {
-      m_tags.clear();
-      m_members.clear();
+      if (!m_open.empty()) return fail("a " + name + " inside a " + m_open);
+      m_open = name;
       m_line = here();
       m_isDeleted = isDeleted(attributes);
       if (name == "node" && !m_isDeleted) beginNode(attributes);
+    } else if (m_open.empty()) {
+      return;  // a tag of a relation
     } else if (name == "tag") {
       const char *key = attribute(attributes, "k"), *value = attribute(attributes, "v");
       if (key && value) m_tags[key] = value;
@@ -152,12 +159,17 @@ class OsmReader {
   }
 
   void end(const std::string& name) {
-    if (m_isDeleted) return;
-    if (name == "node") {
-      if (const char* kind = kindOf(m_tags, kNodes)) add(m_place, kind);
-    } else if (name == "way") {
-      if (const char* kind = kindOf(m_tags, kWays)) addWay(kind);
+    if (name != m_open) return;
+    if (!m_isDeleted) {
+      if (name == "node") {
+        if (const char* kind = kindOf(m_tags, kNodes)) add(m_place, kind);
+      } else if (const char* kind = kindOf(m_tags, kWays)) {
+        addWay(kind);
+      }
     }
+    m_open.clear();
+    m_tags.clear();
+    m_members.clear();
   }
 
   void addWay(const char* kind) {
@@ -182,6 +194,7 @@ class OsmReader {
   std::filesystem::path m_file;
   XML_Parser m_parser;
   std::string m_problem, m_line;
+  std::string m_open;  ///< `node` or `way`: what its tags belong to
   bool m_isOsm = false, m_isDeleted = false;
   Eigen::Vector2d m_place = Eigen::Vector2d::Zero();
   Tags m_tags;
@@ -195,6 +208,10 @@ class OsmReader {
 std::vector<InventoryEntry> readCsvInventory(const std::filesystem::path& file,
                                              const Columns& asked, char separator) {
   const io::CsvTable table(file, separator);
+  for (const std::string& name : table.names())
+    if (name.size() > kLongestName)
+      throw Error(file.string() + ": the name of a column has " + std::to_string(name.size()) +
+                  " bytes; at most " + std::to_string(kLongestName) + " are allowed");
   const Columns columns = columnsOf(table, asked, file);
   const std::size_t x = table.column(columns[0]), y = table.column(columns[1]);
   std::vector<InventoryEntry> entries;

@@ -22,7 +22,7 @@ struct InventoryEntry {
 /// \param columns Names of the columns of the place; empty: `lon` and `lat`, `longitude` and
 /// `latitude`, or `x` and `y`, the first pair that is there.
 /// \param separator Between fields.
-/// \throws Error with file and line: no such columns, not a number.
+/// \throws Error with file and line: no such columns, not a number; a name of more than 256 bytes.
 std::vector<InventoryEntry> readCsvInventory(const std::filesystem::path& file,
                                              const std::vector<std::string>& columns,
                                              char separator);
@@ -39,7 +39,7 @@ std::vector<InventoryEntry> readGeoJsonInventory(const std::filesystem::path& fi
 /// `traffic_sign` or `traffic_light` (Lanelet2), which stand in their middle. The property `kind`
 /// is `lamp`, `pole`, `tree`, `sign`, `light` or `bollard`.
 /// \throws Error with file and line: not XML, a node without a place, a way with unknown nodes
-/// only.
+/// only, a node or way inside another.
 std::vector<InventoryEntry> readOsmInventory(const std::filesystem::path& file);
 
 }  // namespace polemcl::apps

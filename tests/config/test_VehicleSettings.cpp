@@ -65,6 +65,9 @@ TEST(VehicleSettings, Refusals) {
                  "[sensor:a] pose = 3: allowed is six numbers");
   EXPECT_REFUSED(load("[vehicle]\nlidars = a\n[sensor:a]\nmodel = table\n"),
                  "[sensor:a] elevations_deg");
+  std::string many = "[vehicle]\nlidars =";
+  for (int i = 0; i < 65; ++i) many += " l" + std::to_string(i);
+  EXPECT_REFUSED(load(many + '\n'), "[vehicle] lidars = 65: allowed is at most 64 labels");
   EXPECT_REFUSED(load("[vehicle]\nfuse_within_s = -1\n"), "[vehicle] fuse_within_s = -1");
 }
 

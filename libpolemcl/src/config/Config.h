@@ -23,11 +23,6 @@
 
 namespace polemcl {
 
-/// \brief Refuses what MRPT's parser of INI files would run as a program or read from the
-/// environment, and texts that `@define` makes very long.
-/// \param name Name of the file in messages. \throws Error with the line.
-void requirePlain(const std::string& text, const std::string& name);
-
 /// \brief An INI file in memory, checked for what MRPT's parser passes over in silence.
 class POLEMCL_EXPORT ConfigFile {
  public:

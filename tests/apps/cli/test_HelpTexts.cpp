@@ -156,7 +156,7 @@ TEST(HelpTexts, HoldNoNumbersOfWordsAndNoLongLines) {
     EXPECT_HAS(help, "\nUsage: " + name + " ");
     std::istringstream lines(help.substr(0, help.find("\nExamples:")));
     // A list of words, as of --sensor, is not broken: it can be copied.
-    const std::regex wordList("  --[a-z]+ [a-z0-9|-]+");
+    const std::regex wordList("  --[a-z]+ [a-z0-9_|-]+");
     for (std::string line; std::getline(lines, line);)
       EXPECT_TRUE(line.size() <= 80 || line.rfind("Usage:", 0) == 0 ||
                   std::regex_match(line, wordList))

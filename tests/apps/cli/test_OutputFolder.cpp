@@ -52,6 +52,15 @@ TEST_F(OutputFolderTest, RemovesWhatAKilledProcessLeft) {
   EXPECT_EQ(names(folder.path()), std::vector<std::string>{other.temporary().filename()});
 }
 
+TEST_F(OutputFolderTest, RemovesOnlyLeftoversThatHoldNothingElse) {
+  for (const char* name : {"out.1-1.tmp/scans/01.bin", "out.1-1.tmp/data.1-7.tmp",
+                           "out.1-2.tmp/thesis.tex", "out.1-3.tmp", "out.2024-01-01.tmp/data"})
+    writeText(folder / name, "");
+  open("out");
+  EXPECT_EQ(names(folder.path()),
+            (std::vector<std::string>{"out.1-2.tmp", "out.1-3.tmp", "out.2024-01-01.tmp"}));
+}
+
 TEST_F(OutputFolderTest, ReplacesAnEarlierOutputAndAnEmptyFolder) {
   writeText(folder / "out" / "mark", "old");
   writeText(folder / "out" / "data", "old");

@@ -149,5 +149,21 @@ TEST_F(RunFolderTest, FoldersInThePlaceOfResultsAreRefusedBeforeAnythingGoes) {
   EXPECT_EQ(readText(folder / "summary.json"), "old");
 }
 
+TEST_F(RunFolderTest, LinksAndFilesInThePlaceOfFoldersAreRefusedBeforeAnythingGoes) {
+  const TempFolder elsewhere;
+  writeText(folder / "summary.json", "old");
+  RunFolder results(folder.path());
+  writeText(results.staged("run_00_scenes") / "000001.3Dscene", "new");
+  fs::create_directory_symlink(elsewhere.path(), folder / "run_00_scenes");
+  EXPECT_REFUSED(results.commit(),
+                 "run_00_scenes: is a link, and a folder of results has to go there");
+  fs::remove(folder / "run_00_scenes");
+  writeText(folder / "run_00_scenes", "mine");
+  EXPECT_REFUSED(results.commit(),
+                 "run_00_scenes: is a file, and a folder of results has to go there");
+  EXPECT_EQ(readText(folder / "run_00_scenes"), "mine");
+  EXPECT_EQ(readText(folder / "summary.json"), "old");
+}
+
 }  // namespace
 }  // namespace polemcl::test_run_folder

@@ -161,6 +161,9 @@ TEST_F(GeoJson, RefusesWhatItCannotPlace) {
 TEST_F(GeoJson, RefusesWhatIsNone) {
   EXPECT_HAS(refusal(""), "is no JSON");
   EXPECT_HAS(refusal(std::string(100000, '[') + std::string(100000, ']')), "nested more than 64");
+  std::string keys = "{\"a\":{\"b\":1},\"c\":[";
+  for (int i = 0; i < 10001; ++i) keys += (i == 0 ? "{" : ",") + ('"' + std::to_string(i)) + "\":0";
+  EXPECT_HAS(refusal(keys + "}]}"), "one of its objects has more than 10000 keys");
   EXPECT_HAS(refusal("[1]"), "FeatureCollection");
   EXPECT_HAS(refusal(R"({"type":"FeatureCollection"})"), "FeatureCollection");
   EXPECT_HAS(refusal(points(""), home), "no point in it");

@@ -108,6 +108,15 @@ TEST_F(MapImportApp, LampsTreesSignsAndLightsOfOpenStreetMap) {
   EXPECT_EQ(map().poles.size(), 2u);
 }
 
+TEST_F(MapImportApp, TagsBelongToTheirNodeOrWayAlone) {
+  const Outcome outcome = import("a.osm", R"(<osm>
+ <node id="1" lat="52" lon="13"><tag k="natural" v="tree"/><tag k="name" v="a"/></node>
+ <relation id="3"><tag k="natural" v="tree"/></relation>
+ <node id="2" lat="52.001" lon="13"/></osm>)");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(map().poles.size(), 1u);
+}
+
 TEST_F(MapImportApp, WhatWasDeletedIsLeftOut) {
   const char* const osm = R"(<osm version="0.6">
  <node id="1" lat="52.0" lon="13.0"><tag k="highway" v="street_lamp"/></node>
@@ -161,6 +170,12 @@ TEST_F(MapImportApp, BadInventoriesAreRefusedWithTheirPlace) {
                      "<!DOCTYPE osm [<!ENTITY a 'aaaa'>\n<!ENTITY b '&a;&a;'>]>\n<osm>"
                      "<node id='1' lat='1' lon='1'><tag k='&b;' v=''/></node></osm>"),
              "a.osm:1: declares the entity a; in OSM XML there are none");
+  EXPECT_HAS(
+      failure("a.osm", "<osm>\n<node id='1' lat='1' lon='1'>\n<node id='2' lat='1' lon='1'/>"),
+      "a.osm:3: a node inside a node");
+  EXPECT_HAS(failure("a.osm", "<osm><way><nd ref='1'/><way/></way></osm>"), "a way inside a way");
+  EXPECT_HAS(failure("a.csv", "lon,lat," + std::string(257, 'n') + "\n1,1,1\n"),
+             "a.csv: the name of a column has 257 bytes; at most 256 are allowed");
   EXPECT_HAS(failure("a.json", "{}"), "is no GeoJSON FeatureCollection");
   EXPECT_HAS(failure("a.json", R"({"type":"FeatureCollection","features":[{"type":"Feature",
              "geometry":{"type":"MultiPoint","coordinates":[[8,50],[8,51]]}}]})"),

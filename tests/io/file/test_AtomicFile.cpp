@@ -82,6 +82,18 @@ TEST_F(AtomicFileTest, RemovesWhatAKilledProcessLeft) {
   EXPECT_TRUE(fs::exists(underWay.temporaryPath()));
 }
 
+TEST_F(AtomicFileTest, WhatOthersCalledLikeATemporaryStays) {
+  write("out.2024-01-01.tmp", "mine");
+  write("out.7-.tmp", "mine");
+  write("out.8-1.tmp/thesis.txt", "mine");
+  ASSERT_EQ(::mkfifo(path("out.9-1.tmp").c_str(), 0600), 0);  // nobody waits for its writer
+  AtomicFile(path("out")).commit();
+  EXPECT_EQ(testing_apps::names(m_folder),
+            (std::vector<std::string>{"out", "out.2024-01-01.tmp", "out.7-.tmp", "out.8-1.tmp",
+                                      "out.9-1.tmp"}));
+  EXPECT_EQ(read(path("out.8-1.tmp/thesis.txt")), "mine");
+}
+
 TEST_F(AtomicFileTest, PassesOverATemporaryOfAnother) {
   // As on a file system of two machines: the next name, that of the last with its number plus one,
   // is there, and its owner is alive.

@@ -1,4 +1,9 @@
+#include <sys/stat.h>
+
+#include <cstdio>
+
 #include "io/file/Bytes.h"
+#include "io/file/TextFile.h"
 #include "support/IoFiles.h"
 
 namespace polemcl::test_bytes {
@@ -62,6 +67,29 @@ TEST_F(BytesTest, RefusesBadInput) {
   EXPECT_REFUSED(readBytes(path("no")), path("no").string(), "No such file or directory");
   EXPECT_REFUSED(readBytes(path(std::string(300, 'x'))), "File name too long");
   EXPECT_REFUSED(readBytes(m_folder), "folder");
+  EXPECT_REFUSED(readBytes("/dev/zero"), "/dev/zero: it is a device or a named pipe");
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);  // without a writer
+  EXPECT_REFUSED(readBytes(path("pipe")), "pipe: it is a device or a named pipe");
+}
+
+/// What a command gives, as a shell hands it over: /dev/fd/63.
+class Given {
+ public:
+  explicit Given(const std::string& command) : m_pipe(::popen(command.c_str(), "r")) {}
+  ~Given() { ::pclose(m_pipe); }
+  Given(const Given&) = delete;
+  Given& operator=(const Given&) = delete;
+  std::string path() const { return "/dev/fd/" + std::to_string(::fileno(m_pipe)); }
+
+ private:
+  std::FILE* m_pipe;
+};
+
+TEST_F(BytesTest, ReadsThePipesOfAShell) {
+  EXPECT_EQ(readBytes(Given("seq 3").path()), "1\n2\n3\n");
+  EXPECT_EQ(readBytes(Given("seq 100000").path()).size(), 588895u);
+  EXPECT_EQ(readLines(Given("seq 3").path()), (std::vector<std::string>{"1", "2", "3"}));
+  EXPECT_REFUSED(readBytes(Given("head -c 257M /dev/zero").path()), "more than 256 MB");
 }
 
 }  // namespace polemcl::test_bytes

@@ -44,6 +44,14 @@ TEST_F(CsvTableTest, AHeaderAloneIsATableWithoutRows) {
   EXPECT_EQ(CsvTable(write("t.csv", "x,y\n")).rows(), 0u);
 }
 
+TEST_F(CsvTableTest, KeepsNoBlankLinesAndNotMoreFieldsThanItsSizeAllows) {
+  writeGzip(path("blank.csv.gz"), "x,y\n" + std::string(14 << 20, '\n') + "1,2\n");
+  EXPECT_EQ(CsvTable(path("blank.csv.gz")).rows(), 1u);
+  writeGzip(path("fields.csv.gz"), "x,y\n" + std::string(14 << 20, ','));
+  EXPECT_REFUSED(CsvTable(path("fields.csv.gz")),
+                 "fields.csv.gz: it holds more than 3 lines and fields");
+}
+
 TEST_F(CsvTableTest, RefusesWhatIsNoTable) {
   expectIn(refusal(""), path("t.csv").string(), "empty");
   expectIn(refusal("x,y\n1\n"), ":2: ", "1 fields", "2 expected");

@@ -56,6 +56,13 @@ TEST_F(TextFileTest, RefusesTextThatNoTableHolds) {
   EXPECT_REFUSED(readLines(path("bomb.gz")), path("bomb.gz").string(), "more than 18 MB");
 }
 
+// Each line and field that is kept takes memory.
+TEST_F(TextFileTest, RefusesMoreLinesThanAFileOfItsSizeCanHold) {
+  writeGzip(path("lines.gz"), std::string(14 << 20, '\n'));
+  EXPECT_REFUSED(readLines(path("lines.gz")), "lines.gz: it holds more than 47",
+                 "lines and fields");
+}
+
 // A long table is no bomb: 130 MB of one line.
 TEST_F(TextFileTest, PlainTextMayHaveAnyLength) {
   fs::resize_file(write("long", "1\n"), 130 << 20);

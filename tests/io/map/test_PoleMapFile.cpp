@@ -423,6 +423,26 @@ TEST_F(MapScans, TravelInTheMapBesideItsPoles) {
   EXPECT_EQ(map.info, onePole().info);
 }
 
+TEST_F(MapScans, RefuseTimesAndSensorsThatCannotBe) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const auto refusal = [](const auto& change) {
+    AddedSessions scans = sample();
+    AddedSession& session = scans.sessions[0];
+    const auto used = std::find(session.used.begin(), session.used.end(), true);
+    change(session.scans[static_cast<std::size_t>(used - session.used.begin())]);
+    return messageOf([&] { unpackMapScans(packMapScans(scans), "x: "); });
+  };
+  for (const double value : {none, 1e300, -1e300}) {
+    EXPECT_HAS(refusal([&](SessionScan& scan) { scan.time = value; }), "x: damaged: the time of");
+    EXPECT_HAS(refusal([&](SessionScan& scan) { scan.pose_robot_sensor.x = value; }),
+               "x: damaged: a sensor of");
+    EXPECT_HAS(refusal([&](SessionScan& scan) { scan.pose_robot_sensor.y = value; }),
+               "x: damaged: a sensor of");
+  }
+  EXPECT_HAS(refusal([&](SessionScan& scan) { scan.pose_robot_sensor.yaw = none; }),
+             "x: damaged: a sensor of");
+}
+
 TEST_F(MapScans, RefuseToBeDamaged) {
   const std::string good = packMapScans(sample());
   EXPECT_THROW(unpackMapScans("", "x: "), Error);

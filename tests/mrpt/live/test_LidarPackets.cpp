@@ -130,6 +130,7 @@ TEST(HesaiPackets, RefusesOtherTables) {
     return HesaiPackets((folder / "a.csv").string());
   };
   EXPECT_REFUSED(HesaiPackets((folder / "none.csv").string()), "none.csv: cannot be read");
+  EXPECT_REFUSED(HesaiPackets("/dev/zero"), "/dev/zero: cannot be read: it is a device");
   const std::string begin = "Channel,Elevation,Azimuth\n";
   const auto expect = [&](const std::string& text, const std::string& why) {
     EXPECT_REFUSED(of(text), "a.csv: is no table of the angles of a Hesai: ", why);
@@ -214,6 +215,7 @@ TEST_F(OusterPacketsTest, PacketsOutsideTheWindowAreNotNumbered) {
 
 TEST_F(OusterPacketsTest, RefusesOtherMetadata) {
   EXPECT_REFUSED(OusterPackets((folder / "none.json").string()), "none.json: cannot be read");
+  EXPECT_REFUSED(OusterPackets("/dev/zero"), "/dev/zero: cannot be read: it is a device");
   const auto expect = [&](const std::string& text, const std::string& why) {
     EXPECT_REFUSED(of(text), "os.json: is no metadata of an Ouster: ", why);
   };

@@ -16,6 +16,7 @@ TEST_F(LiveSensorsTest, NeedsASensorWithADriver) {
   EXPECT_THROW(startSensors((folder / "none.ini").string(), {}), Error);
   expectError("", {"sensors.ini: names no sensor", "driver = CVelodyneScanner"});
   expectError("[global]\nrawlog_prefix = x\n", {"names no sensor"});
+  expectError("[a]\ndriver = $env{HOME}\n", {"sensors.ini:2: $e", "is allowed; write the value"});
   expectError("[lidar]\ndriver = CVelodyneScanner\nrawlog-grabber-ignore = true\n",
               {"names no sensor"});
   expectError("[lidar]\nmodel = VLP16\n", {"sensors.ini: [lidar]: no driver", "CVelodyneScanner"});

@@ -4,6 +4,7 @@
 #include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
@@ -56,9 +57,9 @@ std::string refusal(const std::string& bytes) {
   return message;
 }
 
-/// Error message for a rawlog of these bytes.
+/// Error message for a rawlog of these bytes, which must be rejected without much memory.
 std::string rawlogRefusal(const testing_apps::TempFolder& folder, const std::string& bytes,
-                          bool compressed = false) {
+                          bool compressed = false, std::size_t most = 2 * kMegabyte) {
   const std::string path = folder / "s.rawlog";
   const gzFile file = gzopen(path.c_str(), compressed ? "wb" : "wbT");
   gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
@@ -73,7 +74,7 @@ std::string rawlogRefusal(const testing_apps::TempFolder& folder, const std::str
     });
   });
   EXPECT_NE(message, "no error");
-  EXPECT_LT(taken, 2 * kMegabyte) << message;
+  EXPECT_LT(taken, most) << message;
   return message;
 }
 
@@ -267,6 +268,27 @@ TEST(ForgedLengths, CountsOfCollections) {
     EXPECT_HAS(rawlogRefusal(folder, header(name) + version + number(3'000'000'000)),
                "truncated: the file ends inside an object");
   }
+}
+
+TEST(ForgedLengths, CollectionsOfTooManyElements) {
+  const testing_apps::TempFolder folder;
+  std::string elements;
+  for (int i = 0; i < 4097; ++i) elements += bytesOf(mrpt::obs::CObservationOdometry());
+  EXPECT_HAS(rawlogRefusal(
+                 folder, header("mrpt::obs::CSensoryFrame") + '\2' + number(4097) + elements, true),
+             "a collection of more than 4096 elements");
+}
+
+TEST(ForgedLengths, ObjectsLargerThanTheirFileCanHold) {
+  const testing_apps::TempFolder folder;
+  mrpt::obs::CObservationComment comment;
+  comment.text.assign(kMegabyte, ' ');
+  std::string elements;
+  for (int i = 0; i < 20; ++i) elements += bytesOf(comment);
+  EXPECT_HAS(
+      rawlogRefusal(folder, header("mrpt::obs::CSensoryFrame") + '\2' + number(20) + elements, true,
+                    40 * kMegabyte),
+      "it holds more than 17 MB; no object of a file of this size does");
 }
 
 // Frames of MRPT before 0.5.5 and of each version since hold the same observations.

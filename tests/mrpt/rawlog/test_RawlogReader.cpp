@@ -209,6 +209,20 @@ TEST_F(RawlogReaderTest, LosesNoActionAndNoFrame) {
   EXPECT_TRUE(!reading.entries[5].action && reading.entries[5].frame);
 }
 
+TEST_F(RawlogReaderTest, KeepsAMegabyteOfComments) {
+  std::string bytes;
+  for (const std::size_t size : {600000u, 600000u, 400000u}) {
+    CObservationComment comment;
+    comment.text.assign(size, static_cast<char>('0' + size / 100000));
+    bytes += samples::bytesOf(comment);
+  }
+  writeFile(bench.path, bytes + odometry(1));
+  RawlogReader reader(bench.path);
+  RawlogEntry entry;
+  EXPECT_TRUE(reader.next(entry));
+  EXPECT_EQ(reader.comment(), std::string(600000, '6') + '\n' + std::string(400000, '4'));
+}
+
 TEST_F(RawlogReaderTest, JoinedFilesAreOneFile) {
   const std::string one = action(1) + frame(1), two = action(2) + frame(2);
   EXPECT_EQ(bench.read(one + two).entries.size(), 2u);
@@ -262,6 +276,16 @@ TEST_F(RawlogReaderTest, TruncatedGzip) {
     EXPECT_LE(lax.entries.size(), 50u);
     EXPECT_GT(lax.entries.size(), 5u);
   }
+}
+
+// Any number of small objects would take memory where all are kept.
+TEST_F(RawlogReaderTest, RefusesMoreThanAFileOfItsSizeCanHold) {
+  CObservationComment comment;
+  comment.text.assign(8 << 20, ' ');
+  const std::string part = gzipped(samples::bytesOf(comment), bench.folder);
+  std::string bytes;
+  for (int i = 0; i < 45; ++i) bytes += part;
+  EXPECT_HAS(bench.read(bytes).error, "MB, uncompressed; no rawlog of its size does");
 }
 
 TEST_F(RawlogReaderTest, EmptyFile) {

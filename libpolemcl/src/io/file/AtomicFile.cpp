@@ -86,7 +86,8 @@ void syncAll(const fs::path& folder) {
 
 TemporaryFile::TemporaryFile(fs::path target) : m_target(std::move(target)) {
   static std::atomic<unsigned> counter{0};
-  removeLeftovers(m_target);
+  removeLeftovers(
+      m_target, [](const fs::path& path) { return fs::is_regular_file(fs::symlink_status(path)); });
   while (true) {
     m_path = m_target;
     m_path += "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";

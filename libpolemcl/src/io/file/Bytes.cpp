@@ -5,6 +5,8 @@
 #include <memory>
 
 #include <polemcl/core/common/Types.h>
+#include "io/file/InputFile.h"
+#include "io/file/ReadLimits.h"
 
 namespace polemcl::io {
 
@@ -12,19 +14,21 @@ std::string readBytes(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& why) {
     return Error("cannot read " + file.string() + ": " + why);
   };
-  // Opening a folder succeeds; only reading it fails.
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
+  if (const char* why = whyNoInput(file)) throw fail(why);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
                                                                &std::fclose);
   if (!stream) throw fail(std::strerror(errno));
-  const auto size = std::filesystem::file_size(file, ignored);
+  std::error_code isPipe;
+  const auto size = std::filesystem::file_size(file, isPipe);
   std::string bytes;
   // One byte more than the file size, so that the first read reaches the end.
-  bytes.resize(ignored ? 65536 : size + 1);
+  bytes.resize(isPipe ? 65536 : size + 1);
   std::size_t used = 0;
   while (true) {
     used += std::fread(bytes.data() + used, 1, bytes.size() - used, stream.get());
+    if (isPipe && used > kMostPipedBytes)
+      throw fail("the pipe gives more than " + std::to_string(kMostPipedBytes >> 20) +
+                 " MB; write it to a file");
     if (used < bytes.size()) break;
     bytes.resize(2 * bytes.size());
   }

@@ -11,7 +11,8 @@
 
 namespace polemcl::io {
 
-/// \brief Reads a whole file. \throws Error with the system's reason when the file cannot be read.
+/// \brief Reads a whole file. \throws Error with the system's reason when the file cannot be read;
+/// for what is no input (InputFile.h), and a pipe that gives more than allowed (ReadLimits.h).
 std::string readBytes(const std::filesystem::path& file);
 
 /// \brief The unsigned integer of the size of T.

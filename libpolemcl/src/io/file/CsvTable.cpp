@@ -33,13 +33,15 @@ std::vector<std::string> splitCsv(std::string_view line, char separator, const s
 }  // namespace
 
 CsvTable::CsvTable(const std::filesystem::path& file, char separator) : m_file(file) {
-  const auto lines = readLines(file);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string_view line = trimmed(lines[i]);
+  LineReader lines(file);
+  std::string whole;
+  for (std::size_t number = 1; lines.next(whole); ++number) {
+    const std::string_view line = trimmed(whole);
     if (line.empty() || line.front() == '#') continue;
-    const std::string where = io::at(file, i + 1);
+    lines.keep(2 + static_cast<std::size_t>(std::count(line.begin(), line.end(), separator)));
+    const std::string where = io::at(file, number);
     // A tab at an end of the line may be a separator.
-    Row row{i + 1, splitCsv(separator == '\t' ? lines[i] : line, separator, where)};
+    Row row{number, splitCsv(separator == '\t' ? whole : line, separator, where)};
     if (m_header.fields.empty()) {
       m_header = std::move(row);
     } else if (row.fields.size() != m_header.fields.size()) {

@@ -14,21 +14,28 @@ namespace {
 
 constexpr const char* kEnding = ".tmp";
 
-bool isLinked(int descriptor) {
+/// A regular file or folder that nobody has removed.
+bool isThere(int descriptor) {
   struct stat status {};
-  return ::fstat(descriptor, &status) == 0 && status.st_nlink > 0;
+  return ::fstat(descriptor, &status) == 0 && status.st_nlink > 0 &&
+         (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode));
+}
+
+bool isNumber(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
 }  // namespace
 
 PathLock::PathLock(const fs::path& path)
-    : PathLock(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)) {}
+    // Opening a pipe would wait for its other end.
+    : PathLock(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)) {}
 
 PathLock::PathLock(int descriptor) : m_descriptor(descriptor) {
   if (descriptor < 0) return;
   const bool isLocked = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
   m_isOfAnother = !isLocked && errno == EWOULDBLOCK;
-  m_isHeld = isLocked && isLinked(descriptor);
+  m_isHeld = isLocked && isThere(descriptor);
 }
 
 PathLock PathLock::waitFor(const fs::path& path) {
@@ -74,17 +81,20 @@ bool isTemporaryOf(const std::string& target, const std::string& name) {
       name.compare(name.size() - end.size(), end.size(), end) != 0)
     return false;
   const auto middle = name.substr(begin.size(), name.size() - begin.size() - end.size());
-  return middle.find_first_not_of("0123456789-") == std::string::npos;
+  const auto dash = middle.find('-');
+  return dash != std::string::npos && isNumber(middle.substr(0, dash)) &&
+         isNumber(middle.substr(dash + 1));
 }
 
-void removeLeftovers(const fs::path& target) {
+void removeLeftovers(const fs::path& target,
+                     const std::function<bool(const fs::path& path)>& isOurs) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
   const std::string own = target.filename().string();
   std::error_code none;
   for (const fs::path& left :
        leftoversIn(folder, [&](const std::string& name) { return isTemporaryOf(own, name); })) {
     const PathLock lock(left);  // so that nobody begins to use it
-    if (lock.isHeld()) fs::remove_all(left, none);
+    if (lock.isHeld() && isOurs(left)) fs::remove_all(left, none);
   }
 }
 

@@ -14,7 +14,7 @@ namespace polemcl::io {
 class PathLock {
  public:
   PathLock() = default;
-  /// \brief Locks what is there; isHeld() tells whether that worked.
+  /// \brief Locks the regular file or folder that is there; isHeld() tells whether that worked.
   explicit PathLock(const std::filesystem::path& path);
   /// \brief Takes over an open descriptor.
   explicit PathLock(int descriptor);
@@ -39,10 +39,13 @@ std::vector<std::filesystem::path> leftoversIn(
     const std::filesystem::path& folder,
     const std::function<bool(const std::string& name)>& isTemporary);
 
-/// \brief True for `TARGET.…tmp` with nothing but digits and dashes between.
+/// \brief True for `TARGET.PROCESS-NUMBER.tmp`.
 bool isTemporaryOf(const std::string& target, const std::string& name);
 
 /// \brief Removes what killed processes left of `target`, by the names of isTemporaryOf().
-void removeLeftovers(const std::filesystem::path& target);
+/// \param isOurs Whether what has such a name may be removed, with all that is in it: others may
+///        have given the name.
+void removeLeftovers(const std::filesystem::path& target,
+                     const std::function<bool(const std::filesystem::path& path)>& isOurs);
 
 }  // namespace polemcl::io

@@ -11,6 +11,10 @@ namespace polemcl::io {
 
 /// Largest text of a table in gzip, bytes after decompression: a small file can hold very much.
 inline constexpr std::size_t kMostTextBytes = std::size_t{128} << 20;
+/// Most bytes that are read from a pipe into memory: nobody knows its size.
+inline constexpr std::size_t kMostPipedBytes = std::size_t{256} << 20;
+/// Memory of a line or field of a table that is kept, beside its text.
+inline constexpr std::uint64_t kKeptTextBytes = 32;
 /// Most bytes that compressed tables, maps and scans may hold, by the bytes that they take. Numbers
 /// and text shrink to a third or a tenth of their size; the first part allows small empty ones.
 constexpr std::uint64_t mostInflated(std::uint64_t compressed) {

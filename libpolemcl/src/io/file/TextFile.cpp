@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <polemcl/core/common/Types.h>
+#include "io/file/InputFile.h"
 #include "io/file/ReadLimits.h"
 
 namespace polemcl::io {
@@ -20,8 +21,8 @@ LineReader::LineReader(const std::filesystem::path& file)
   const auto fail = [&](const std::string& why) {
     return Error("cannot read " + file.string() + ": " + why);
   };
+  if (const char* why = whyNoInput(file)) throw fail(why);
   std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
   const auto size = std::filesystem::file_size(file, ignored);
   if (!ignored) m_size = size;
   errno = 0;
@@ -74,6 +75,14 @@ bool LineReader::next(std::string& line) {
   return true;
 }
 
+void LineReader::keep(std::size_t entries) {
+  m_kept += entries;
+  if (m_kept > (kMostTextBytes + mostInflated(m_size)) / kKeptTextBytes)
+    throw Error("cannot read " + m_file.string() + ": it holds more than " +
+                std::to_string(m_kept - entries) +
+                " lines and fields; no table of its size has that many");
+}
+
 std::uint64_t LineReader::done() const {
   return static_cast<std::uint64_t>(std::max<z_off_t>(0, gzoffset(m_stream.get())));
 }
@@ -102,7 +111,10 @@ std::vector<std::string> wordsOf(std::string_view text) {
 std::vector<std::string> readLines(const std::filesystem::path& file) {
   LineReader reader(file);
   std::vector<std::string> lines;
-  for (std::string line; reader.next(line);) lines.push_back(line);
+  for (std::string line; reader.next(line);) {
+    reader.keep(1);
+    lines.push_back(line);
+  }
   return lines;
 }
 
@@ -176,8 +188,10 @@ std::vector<NumberRow> readNumberRows(const std::filesystem::path& file, std::si
                                       const std::string& layout) {
   NumberRowReader reader(file, columns, layout);
   std::vector<NumberRow> rows;
-  for (std::vector<double> values; reader.next(values);)
+  for (std::vector<double> values; reader.next(values);) {
+    reader.keep(1);
     rows.push_back({reader.line(), std::move(values)});
+  }
   return rows;
 }
 

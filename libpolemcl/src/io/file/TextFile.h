@@ -26,11 +26,14 @@ struct NumberRow {
 /// or `\r\n`). Plain text or gzip. A byte order mark is dropped.
 class LineReader {
  public:
-  /// \throws Error when the file cannot be opened.
+  /// \throws Error when the file cannot be opened, or is no input (InputFile.h).
   explicit LineReader(const std::filesystem::path& file);
   /// \return False at the end. \throws Error when the file cannot be read, is truncated, or holds
   ///         more than allowed (ReadLimits.h).
   bool next(std::string& line);
+  /// \brief Tells how many lines and fields the caller keeps: each takes memory, however short it
+  /// is. \throws Error when a file of this size cannot hold that many (ReadLimits.h).
+  void keep(std::size_t entries);
   /// \brief Size of the file, and how much of it was read; bytes, as it lies on the disk.
   std::uint64_t size() const { return m_size; }
   std::uint64_t done() const;
@@ -43,7 +46,7 @@ class LineReader {
   std::string m_text;  ///< text read; the part from m_begin on is not returned yet
   std::size_t m_begin = 0;
   std::size_t m_read = 0;  ///< bytes, uncompressed
-  std::uint64_t m_size = 0, m_most = 0;
+  std::uint64_t m_size = 0, m_most = 0, m_kept = 0;
   bool m_ended = false, m_cutShort = false;
 };
 
@@ -69,6 +72,8 @@ class NumberRowReader {
   /// \return False at the end.
   /// \throws Error with file and line: wrong number of columns, not a number, failed read.
   bool next(std::vector<double>& values);
+  /// \brief As LineReader::keep(), for callers that keep the rows.
+  void keep(std::size_t rows) { m_lines.keep(rows); }
   /// \brief The line read last, from 1 on; with the file for messages, "FILE:LINE: ".
   std::size_t line() const { return m_line; }
   std::string at() const;

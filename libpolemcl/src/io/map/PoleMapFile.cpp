@@ -198,6 +198,7 @@ void eachChunk(const std::filesystem::path& file, const Use& use) {
   }
 }
 
+constexpr double kLatestTime = 1e11;  ///< s, some thousand years
 constexpr std::uint64_t kScanBytes = 4 * 8 + 4, kPoleBytes = 10 * 8 + 4;  ///< smallest size of each
 
 void put(ByteWriter& writer, const Pose2D& pose) {
@@ -263,6 +264,16 @@ PoleDetection getPole(ByteReader& reader) {
     *value = reader.get<double>();
   p.points = reader.get<std::uint32_t>();
   return p;
+}
+
+/// Poses in the map, and poles, are checked when the scans are used.
+void requireSound(const SessionScan& scan, const std::string& where) {
+  const Pose2D& sensor = scan.pose_robot_sensor;
+  if (!(std::abs(scan.time) <= kLatestTime))
+    throw Error(where + "damaged: the time of a scan is not finite, or beyond 1e11 s");
+  if (!(std::abs(sensor.x) <= PoleIndex::farthest && std::abs(sensor.y) <= PoleIndex::farthest &&
+        std::isfinite(sensor.yaw)))
+    throw Error(where + "damaged: a sensor of its scans is not at a finite place within 1e9 m");
 }
 
 /// \return Whether the scan is used.
@@ -404,7 +415,10 @@ AddedSessions unpackMapScans(std::string_view content, const std::string& where)
     const auto scans = countOf<std::uint64_t>(reader, kScanBytes, where);
     session.scans.resize(scans);
     session.used.reserve(scans);
-    for (SessionScan& scan : session.scans) session.used.push_back(getScan(reader, where, scan));
+    for (SessionScan& scan : session.scans) {
+      session.used.push_back(getScan(reader, where, scan));
+      requireSound(scan, where);
+    }
   }
   if (reader.remaining() == 0) return added;  // written by 1.0.0
   for (AddedSession& session : added.sessions) getCovariances(reader, where, session);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include <polemcl/core/common/Types.h>
+#include "io/file/InputFile.h"
 
 namespace polemcl {
 
@@ -42,6 +43,8 @@ HesaiPackets::HesaiPackets(const std::string& calibrationFile) {
   const auto refuse = [&](const std::string& why) {
     throw Error(calibrationFile + ": is no table of the angles of a Hesai: " + why);
   };
+  if (const char* why = io::whyNoInput(calibrationFile))
+    throw Error(calibrationFile + ": cannot be read: " + why);
   std::ifstream in(calibrationFile);
   if (!in) throw Error(calibrationFile + ": cannot be read");
   for (std::string row; std::getline(in, row);) {

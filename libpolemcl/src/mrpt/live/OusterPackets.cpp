@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include <polemcl/core/common/Types.h>
+#include "io/file/InputFile.h"
 #include "io/file/ParsedJson.h"
 
 namespace polemcl {
@@ -99,6 +100,8 @@ std::pair<int, double> modeOf(const Json& all) {
 
 OusterPackets::OusterPackets(const std::string& metadataFile) {
   try {
+    if (const char* why = io::whyNoInput(metadataFile))
+      throw Error(metadataFile + ": cannot be read: " + why);
     std::ifstream in(metadataFile);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     if (!in) throw Error(metadataFile + ": cannot be read");

@@ -15,6 +15,8 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
+#include "config/PlainText.h"
+#include "io/file/InputFile.h"
 #include "mrpt/common/MrptReason.h"
 #include "mrpt/live/CUdpOdometry.h"
 #include "mrpt/live/LiveSensors.h"
@@ -196,9 +198,11 @@ void SensorThread::tellPackets(const SensorEvents& events) {
 class SensorThreads : public LiveSensors {
  public:
   SensorThreads(const std::string& file, SensorEvents events) : m_events(std::move(events)) {
+    if (const char* why = io::whyNoInput(file)) throw Error(file + ": cannot be read: " + why);
     std::ifstream in(file);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     if (!in) throw Error(file + ": cannot be read");
+    requirePlain(text, file);
     mrpt::config::CConfigFileMemory config(text);
     std::vector<std::string> sections;
     config.getAllSections(sections);

@@ -30,6 +30,10 @@ using mrpt::serialization::CSerializable;
 
 namespace {
 
+constexpr std::size_t kMostComment = 1 << 20;   ///< bytes of the comments that are kept
+constexpr std::uint64_t kRepeated = 256 << 20;  ///< bytes that may repeat: a parked vehicle
+constexpr std::uint32_t kMostElements = 4096;   ///< of a frame or a collection of actions
+
 /// Reads the objects of a rawlog. MRPT's own reading of a CSensoryFrame or a CActionCollection
 /// takes memory for the count in the file before it reads an element, and crashes if an element is
 /// null or of a foreign class. Here memory grows with the elements that the file holds, and each is
@@ -37,7 +41,9 @@ namespace {
 /// refused before.
 class RawlogArchive : public mrpt::serialization::CArchiveStreamBase<GzReadStream> {
  public:
-  using CArchiveStreamBase::CArchiveStreamBase;
+  /// \param most Bytes of one object.
+  RawlogArchive(GzReadStream& stream, std::uint64_t most)
+      : CArchiveStreamBase(stream), m_most(most) {}
 
   /// The next object of the file, never null.
   /// \throws std::exception when it is damaged or its class is unknown. The archive cannot be used
@@ -62,6 +68,7 @@ class RawlogArchive : public mrpt::serialization::CArchiveStreamBase<GzReadStrea
   template <class Element>
   typename Element::Ptr readElement(std::uint32_t index, const char* wanted);
 
+  std::uint64_t m_most, m_taken = 0;  ///< bytes of the file
   bool m_keeps = false;               ///< what is read now is read again
   std::vector<std::uint8_t> m_again;  ///< to be read again, before the rest of the file
 };
@@ -72,6 +79,10 @@ std::size_t RawlogArchive::read(void* data, std::size_t size) {
   m_again.erase(m_again.begin(), m_again.begin() + static_cast<std::ptrdiff_t>(again));
   std::uint8_t* rest = static_cast<std::uint8_t*>(data) + again;
   const std::size_t count = again < size ? CArchiveStreamBase::read(rest, size - again) : 0;
+  m_taken += count;
+  if (m_taken > m_most)
+    throw std::runtime_error("it holds more than " + std::to_string(m_most >> 20) +
+                             " MB; no object of a file of this size does");
   if (m_keeps) m_again.insert(m_again.end(), rest, rest + count);
   return again + count;
 }
@@ -125,6 +136,9 @@ CSerializable::Ptr RawlogArchive::readEntry() {
 
 template <class Element>
 typename Element::Ptr RawlogArchive::readElement(std::uint32_t index, const char* wanted) {
+  if (index == kMostElements)
+    throw std::runtime_error("a collection of more than " + std::to_string(kMostElements) +
+                             " elements");
   const Header header = readHeader();
   if (!header.known || !header.known->derivedFrom(CLASS_ID(Element)))
     throw std::runtime_error("element " + std::to_string(index) + " of its collection is " +
@@ -217,10 +231,14 @@ std::optional<RawlogReader::Object> RawlogReader::readObject() {
     }
     return std::nullopt;
   }
+  const std::uint64_t most = kRepeated + mostAtATime();
+  if (!m_growing && offset > most)
+    throw Error(m_name + ": holds more than " + std::to_string(most >> 20) +
+                " MB, uncompressed; no rawlog of its size does");
   const AllocationLimit limit(mostAtATime());
   std::string what;
   try {
-    Object object{RawlogArchive(m_stream).readEntry(), offset};
+    Object object{RawlogArchive(m_stream, mostAtATime()).readEntry(), offset};
     ++m_objects;
     return object;
   } catch (const std::bad_alloc& error) {
@@ -258,6 +276,7 @@ bool RawlogReader::next(RawlogEntry& entry) {
   while (auto read = nextObject()) {
     entry.offset = read->offset;
     if (const auto comment = std::dynamic_pointer_cast<CObservationComment>(read->object)) {
+      if (m_comment.size() + comment->text.size() >= kMostComment) continue;
       if (!m_comment.empty()) m_comment += '\n';
       m_comment += comment->text;
       continue;

@@ -28,6 +28,7 @@ class RawlogReader : public EntrySource {
   bool next(RawlogEntry& entry) override;
   void stop() override { m_stream.stop(); }
   /// \brief Text of the comments read so far; those of RawlogWriter and of RawlogViewer come first.
+  /// Comments with which it would be longer than 1 MB are left out.
   const std::string& comment() const override { return m_comment; }
   /// \brief True when the file is truncated and this was allowed.
   bool truncated() const override { return m_truncated; }

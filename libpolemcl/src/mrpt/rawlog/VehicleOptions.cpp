@@ -12,6 +12,8 @@
 namespace polemcl {
 namespace {
 
+constexpr std::size_t kMostLidars = 64;
+
 bool isName(const std::string& label) {
   return std::all_of(label.begin(), label.end(), [](unsigned char c) {
     return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '/';
@@ -29,7 +31,10 @@ bool sameName(const std::string& a, const std::string& b) {
 std::vector<LidarOptions> lidarsOf(const Binder& b, const std::string& labels,
                                    const VehicleOptions& before, const LidarOptions& common) {
   std::vector<LidarOptions> lidars;
-  for (const std::string& label : io::wordsOf(labels)) {
+  const auto names = io::wordsOf(labels);
+  b.require(names.size() <= kMostLidars, "lidars", static_cast<double>(names.size()),
+            "at most " + std::to_string(kMostLidars) + " labels (the value is their number)");
+  for (const std::string& label : names) {
     const auto same = [&](const LidarOptions& other) { return sameName(other.label, label); };
     b.require(isName(label), "lidars", labels,
               "a list of sensor labels of letters, digits and _ - . / (" + label + " is not one)");

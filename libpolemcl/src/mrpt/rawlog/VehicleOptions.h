@@ -37,7 +37,8 @@ struct POLEMCL_EXPORT VehicleOptions {
 
 /// \brief Binds `[vehicle]`, then the sections of each LiDAR that it lists.
 /// \param sensor, extraction What a LiDAR has where its own sections say nothing: already bound.
-/// \throws Error also on labels that are no names of sections, and on a label given twice.
+/// \throws Error also on labels that are no names of sections, and on a label given twice, and on
+/// more than 64 of them.
 POLEMCL_EXPORT void bind(Binder& binder, VehicleOptions& vehicle, const SensorOptions& sensor,
                          const ExtractionOptions& extraction);
 /// \brief Binds the sections of one LiDAR.
