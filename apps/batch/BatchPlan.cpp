@@ -163,11 +163,9 @@ class Planner {
   }
 
   void simulate(const BatchSession& session, BatchTask& task) {
-    AllSettings settings = loadSettings(session.input, session.set);
-    settings.simulation.detections =
-        frozenCopy(besideBatch(m_spec, settings.simulation.detections), task);
-    settings.simulation.world.track =
-        frozenCopy(besideBatch(m_spec, settings.simulation.world.track), task);
+    AllSettings settings = simulationFor(m_spec, session);
+    for (std::string* file : {&settings.simulation.detections, &settings.simulation.world.track})
+      *file = frozenCopy(*file, task);
     const std::string file = "settings/simulate." + session.name + ".ini";
     m_plan.files[file] = settingsText(settings);
     Command command = program("pole-simulate");

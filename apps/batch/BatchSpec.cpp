@@ -8,12 +8,14 @@
 
 #include "config/Config.h"
 #include "core/common/Binder.h"
+#include "io/data/Trajectory.h"
 #include "io/dataset/Nclt.h"
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/InstalledFiles.h"
 #include "io/file/TextFile.h"
 #include "report/batch/PublishedResults.h"
+#include "sim/detections/DetectionModel.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -425,10 +427,20 @@ std::string inputObstacle(const BatchSession& session, bool scored) {
   return what.empty() && scored ? truthObstacle(session) : what;
 }
 
-std::string besideBatch(const BatchSpec& spec, const std::string& file) {
-  if (file.empty()) return file;
-  const fs::path beside = fs::absolute(spec.file.parent_path() / file);
-  return fs::is_regular_file(beside) ? beside.string() : file;
+AllSettings simulationFor(const BatchSpec& spec, const BatchSession& session) {
+  AllSettings settings = loadSettings(session.input, session.set);
+  std::string& model = settings.simulation.detections;
+  std::string& track = settings.simulation.world.track;
+  for (std::string* file : {&model, &track}) {
+    if (file->empty()) continue;
+    const fs::path beside = fs::absolute(spec.file.parent_path() / *file);
+    if (fs::is_regular_file(beside)) *file = beside.string();
+  }
+  io::located("batch " + spec.name + ": session " + session.name + ": ", [&] {
+    if (!model.empty()) sim::readDetectionModel(model);
+    if (!track.empty()) io::readKittiPoses(track);
+  });
+  return settings;
 }
 
 AllSettings settingsFor(const BatchSpec& spec, const BatchConfiguration& configuration) {

@@ -112,8 +112,11 @@ std::uint32_t seedOf(std::uint32_t seed, const std::string& name);
 /// \param scored Whether its true poles (truthMap) are needed as well.
 std::string inputObstacle(const BatchSession& session, bool scored);
 
-/// \brief A file that settings name: beside the batch if it is there, else as the programs find it.
-std::string besideBatch(const BatchSpec& spec, const std::string& file);
+/// \brief The settings of a session with `source = simulated`. Its model of detections and track
+/// are beside the batch if they are there, else as the programs find them. Both are read: what they
+/// name is copied into the folder of the batch, and a batch of others may name any file.
+/// \throws Error as loadSettings(); naming batch and session when a file is no model or no track.
+AllSettings simulationFor(const BatchSpec& spec, const BatchSession& session);
 
 /// \brief The settings of a configuration. \throws Error as loadSettings(), naming batch and
 /// configuration, and when its config is not there.

@@ -170,6 +170,24 @@ TEST(BatchPlan, TracksAreTakenFromBesideTheBatch) {
   EXPECT_EQ(plan.files.at("files/track.txt"), readText(folder / "track.txt"));
 }
 
+// A batch of others must not get other files of this machine into its folder.
+TEST(BatchPlan, RefusesFilesOfASimulationThatAreNoModelAndNoTrack) {
+  static const TempFolder folder;
+  writeText(folder / "secret.env", "PASSWORD=open");
+  const auto refusal = [&](const std::string& setting) {
+    writeText(folder / "a.ini", setting + " = " + (folder / "secret.env").string() + "\n");
+    return messageOf([&] {
+      planOf([](BatchSpec& spec) {
+        spec.sessions[0].source = "simulated";
+        spec.sessions[0].input = (folder / "a.ini").string();
+      });
+    });
+  };
+  EXPECT_HAS(refusal("[simulation]\ndetections"), "session a: ");
+  EXPECT_HAS(refusal("[simulation]\ndetections"), "secret.env: is not JSON");
+  EXPECT_HAS(refusal("[world]\ntrack"), "secret.env:1: ");
+}
+
 TEST(BatchPlan, MapsTakeDoubtfulPolesWhereTheyAreAskedFor) {
   const BatchPlan plan = planOf([](BatchSpec& spec) {
     spec.configurations[0].set = {"map.min_confidence=0.3"};
