@@ -6,6 +6,7 @@
 #include <cctype>
 #include <set>
 
+#include "cli/JsonFile.h"
 #include "config/Config.h"
 #include "core/common/Binder.h"
 #include "io/data/Trajectory.h"
@@ -15,7 +16,6 @@
 #include "io/file/InstalledFiles.h"
 #include "io/file/TextFile.h"
 #include "report/batch/PublishedResults.h"
-#include "sim/detections/DetectionModel.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -352,6 +352,14 @@ std::string truthObstacle(const BatchSession& session) {
   return fs::is_directory(labels) ? "" : labels.string() + " is not there";
 }
 
+/// pole-simulate reads it whole.
+void requireDetectionModel(const std::string& file) {
+  const auto json = readJson(file);
+  const bool isModel = json.is_object() && json.contains("format") && json["format"].is_string() &&
+                       json["format"].get<std::string>().rfind("polemcl detection model", 0) == 0;
+  if (!isModel) throw Error(file + ": is no model of detections");
+}
+
 }  // namespace
 
 const BatchSession& BatchSpec::session(const std::string& wanted) const {
@@ -437,7 +445,7 @@ AllSettings simulationFor(const BatchSpec& spec, const BatchSession& session) {
     if (fs::is_regular_file(beside)) *file = beside.string();
   }
   io::located("batch " + spec.name + ": session " + session.name + ": ", [&] {
-    if (!model.empty()) sim::readDetectionModel(model);
+    if (!model.empty()) requireDetectionModel(model);
     if (!track.empty()) io::readKittiPoses(track);
   });
   return settings;

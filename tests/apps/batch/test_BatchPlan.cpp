@@ -184,8 +184,10 @@ TEST(BatchPlan, RefusesFilesOfASimulationThatAreNoModelAndNoTrack) {
     });
   };
   EXPECT_HAS(refusal("[simulation]\ndetections"), "session a: ");
-  EXPECT_HAS(refusal("[simulation]\ndetections"), "secret.env: is not JSON");
+  EXPECT_HAS(refusal("[simulation]\ndetections"), "secret.env: ");
   EXPECT_HAS(refusal("[world]\ntrack"), "secret.env:1: ");
+  writeText(folder / "secret.env", R"({"password": "open"})");
+  EXPECT_HAS(refusal("[simulation]\ndetections"), "secret.env: is no model of detections");
 }
 
 TEST(BatchPlan, MapsTakeDoubtfulPolesWhereTheyAreAskedFor) {
