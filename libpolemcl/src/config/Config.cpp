@@ -137,7 +137,8 @@ ConfigFile ConfigFile::fromText(const std::string& text, const std::string& name
   requirePlain(text, name);
   try {
     const std::string expanded = mrpt::config::config_parser(text);  // @define
-    if (expanded.find("${") != std::string::npos || expanded.find("@define") != std::string::npos)
+    // CConfigFileMemory expands once more: what @define stands for must not be another.
+    if (expanded.find("@define") != std::string::npos)
       throw Error(name + ": @define stands for another; write its value");
     std::size_t number = 0;
     for (std::size_t at = 0; at < expanded.size();) {
