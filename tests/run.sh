@@ -98,25 +98,32 @@ run_step() {
   esac
 }
 
-# A step that has passed at this commit is not repeated: the command goes on where it was ended.
+# record STEP RESULT BEGIN: a line in the table of this commit.
+record() {
+  mkdir -p "$top/build"
+  printf '%-9s %s %4d min\n' "$1" "$2" $((($(date +%s) - $3) / 60)) | tee -a "$table"
+}
+
+# A step that has passed at this commit, here or alone, is not repeated: the command goes on where it was ended.
 full() {
   status=0
-  commit=$(git -C "$top" describe --always --dirty --exclude '*')
-  table=$top/build/full-$commit.txt
-  mkdir -p "$top/build"
   case $commit in *-dirty) rm -f "$table" ;; esac
   for step in lint test tidy golden mutation viewers slurm debian site clang sanitize threads valgrind fuzz faults long coverage; do
     ! grep -qs "^$step *passed" "$table" || continue
     echo "tests/run.sh $step"
-    begin=$(date +%s) result=passed
-    "$top/tests/run.sh" "$step" || result=FAILED status=1
-    printf '%-9s %s %4d min\n' "$step" "$result" $((($(date +%s) - begin) / 60)) | tee -a "$table"
+    begin=$(date +%s)
+    "$top/tests/run.sh" "$step" || {
+      record "$step" FAILED "$begin"
+      status=1
+    }
   done
   echo "All steps at $commit:"
   cat "$table"
   exit $status
 }
 
+commit=$(git -C "$top" describe --always --dirty --exclude '*' 2>/dev/null) || commit=unknown-dirty
+table=$top/build/full-$commit.txt
 case "$#:${1-}" in
   0:) set -- test ;;
   1:--quick) set -- unit ;;
@@ -141,4 +148,8 @@ if [ -n "${POLEMCL_DATA-}" ]; then
 fi
 # shellcheck disable=SC2086 # one word or none
 "$top/share/setup/install.sh" $packages
-for step in "$@"; do run_step "$step"; done
+for step in "$@"; do
+  begin=$(date +%s)
+  run_step "$step"
+  record "$step" passed "$begin"
+done

@@ -5,30 +5,32 @@
 # map, blind; odometry stuck, slipping, jumping, of another clock; a LiDAR moved; half of the poles gone; false
 # poles; scans that come late, in another order. Also: whole drives with half of the poles gone and twice the
 # false detections, and healthy drives of 10 h.
-# Usage: share/experiments/faults.sh [--quick] OUT [TRACK]
+# Usage: share/experiments/faults.sh [--quick] OUT [FIRST [TRACK]]
 #   OUT      gets maps, drives, one JSON and one text for each fault, table.txt and faults.json
+#   FIRST    first of the five worlds; 521 unless given
 #   TRACK    the road as poses, 12 numbers a line, plain or gzip; $POLEMCL_DATA/tracks/kaist01.txt.gz unless
 #            given; without either, the simulator's own street of 3 km
 #   --quick  one world, 20 trials each, one healthy drive
-# Worlds 521 to 525 (--quick: 521), faults seeded 501.
+# Faults are seeded 501.
 # Programs: build/bin, or POLEMCL_BIN. Needs jq; half an hour on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-worlds="521 522 523 524 525"
+worlds=5
 trials=40
 healthy=9 # drives of each world; 45 of 0.24 h are 10.9 h
 if [ "${1:-}" = --quick ]; then
-  worlds=521
+  worlds=1
   trials=20
   healthy=1
   shift
 fi
-check_arguments 1 2 "$@"
+check_arguments 1 3 "$@"
 make_out "$1"
-track=${2:-${POLEMCL_DATA:+$POLEMCL_DATA/tracks/kaist01.txt.gz}}
+first=${2:-521}
+track=${3:-${POLEMCL_DATA:+$POLEMCL_DATA/tracks/kaist01.txt.gz}}
 road=world.length_m=3000
 [ -z "$track" ] || road=world.track=$track
 find_programs pole-simulate pole-map pole-eval
@@ -64,7 +66,7 @@ for fault in $kinds none; do rm -f "$out"/*."$fault.json" "$out/$fault.txt"; don
 
 map_of 599 # the wrong map: another town on the same road
 seed=501
-for world in $worlds; do
+for world in $(seq "$first" $((first + worlds - 1))); do
   map_of "$world"
   drive "day$world" "$world" 1 2
   for fault in kidnap $lasting; do
