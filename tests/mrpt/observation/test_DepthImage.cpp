@@ -207,6 +207,18 @@ TEST(DepthImage, FlagsOfAnyByte) {
   EXPECT_EQ(extraction.process(scan)->poles.size(), kPoles.size());
 }
 
+TEST(DepthImage, StorageFlagsOfAnyByte) {
+  struct Damaged : CObservation3DRangeScan {
+    Damaged() {
+      std::memset(&m_points3D_external_stored, 50, sizeof m_points3D_external_stored);
+      m_points3D_external_file = "no_such_cloud.bin";
+      hasPoints3D = true;
+    }
+  };
+  ObservationPoleExtractor extraction(options());
+  EXPECT_REFUSED(extraction.process(Damaged()), "no_such_cloud.bin");
+}
+
 TEST(DepthImage, ImagesOfAnySize) {
   ObservationPoleExtractor extraction(options());
   for (const auto& [height, width] : {std::pair{2, 2}, {3, 500}, {301, 417}, {480, 640}}) {

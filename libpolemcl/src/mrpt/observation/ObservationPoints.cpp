@@ -80,11 +80,13 @@ struct StorageFormat : CObservationPointCloud {
   }
 };
 
-/// As StorageFormat; also the flags are hidden.
+/// As StorageFormat. MRPT's own functions use the flags as if they were 0 or 1.
 struct StorageFlags : CObservation3DRangeScan {
-  static bool areSet(const CObservation3DRangeScan& scan) {
-    return storedNumber(scan.*(&StorageFlags::m_rangeImage_external_stored)) != 0 ||
-           storedNumber(scan.*(&StorageFlags::m_points3D_external_stored)) != 0;
+  static bool ofPoints(const CObservation3DRangeScan& scan) {
+    return storedNumber(scan.*(&StorageFlags::m_points3D_external_stored)) != 0;
+  }
+  static bool ofImage(const CObservation3DRangeScan& scan) {
+    return storedNumber(scan.*(&StorageFlags::m_rangeImage_external_stored)) != 0;
   }
 };
 
@@ -115,9 +117,9 @@ void loadExternal(const std::vector<std::string>& files, const Load& load) {
 
 std::vector<std::string> externalFilesOf(const CObservation3DRangeScan& scan) {
   std::vector<std::string> files;
-  if (scan.points3D_isExternallyStored())
+  if (StorageFlags::ofPoints(scan))
     files.push_back(scan.points3D_getExternalStorageFileAbsolutePath());
-  if (!scan.rangeImage_isExternallyStored()) return files;
+  if (!StorageFlags::ofImage(scan)) return files;
   files.push_back(scan.rangeImage_getExternalStorageFileAbsolutePath(""));
   for (const auto& layer : scan.rangeImageOtherLayers)
     files.push_back(scan.rangeImage_getExternalStorageFileAbsolutePath(layer.first));
@@ -240,10 +242,10 @@ PointsView ObservationPoints::readVelodyne(const CObservationVelodyneScan& obser
 /// Prefers the image, the raw data of the camera: a cloud beside it may be thinned or in another
 /// frame.
 PointsView ObservationPoints::readDepth(const CObservation3DRangeScan& observation) {
-  const bool stored = StorageFlags::areSet(observation);
+  const std::vector<std::string> files = externalFilesOf(observation);
   std::optional<CObservation3DRangeScan> copy;
-  if (stored) loadExternal(externalFilesOf(observation), [&] { copy.emplace(observation).load(); });
-  const CObservation3DRangeScan& scan = stored ? *copy : observation;
+  if (!files.empty()) loadExternal(files, [&] { copy.emplace(observation).load(); });
+  const CObservation3DRangeScan& scan = copy ? *copy : observation;
   if (hasPixels(scan)) {
     m_camera = cameraOf(scan);
     m_pixels.prepare(scan, *m_camera);
