@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "mrpt/observation/ObservationPoints.h"
 #include "support/ExtractionSamples.h"
 #include "support/Refusal.h"
 
@@ -217,6 +218,17 @@ TEST(DepthImage, StorageFlagsOfAnyByte) {
   };
   ObservationPoleExtractor extraction(options());
   EXPECT_REFUSED(extraction.process(Damaged()), "no_such_cloud.bin");
+}
+
+TEST(DepthImage, RefusesNamesOfFilesThatMrptCannotUse) {
+  struct Damaged : CObservation3DRangeScan {
+    Damaged() {
+      m_rangeImage_external_stored = true;
+      m_rangeImage_external_file = "x";
+    }
+  };
+  ObservationPoints points{SensorOptions()};
+  EXPECT_REFUSED(points.read(Damaged()), "CObservation3DRangeScan cannot be read");
 }
 
 TEST(DepthImage, ImagesOfAnySize) {

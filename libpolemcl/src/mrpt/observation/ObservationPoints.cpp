@@ -22,6 +22,7 @@
 #include "io/file/ReadLimits.h"
 #include "mrpt/common/AllocationLimit.h"
 #include "mrpt/common/BoundedRead.h"
+#include "mrpt/common/MrptReason.h"
 
 namespace polemcl {
 
@@ -39,6 +40,17 @@ PointsView ObservationPoints::read(const CObservation& observation) {
   m_dropped = 0;
   m_camera.reset();
   m_timing.reset();
+  try {
+    return pointsOf(observation);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(std::string("points of a ") + observation.GetRuntimeClass()->className +
+                " cannot be read: " + mrptReason(error.what()));
+  }
+}
+
+PointsView ObservationPoints::pointsOf(const CObservation& observation) {
   if (const auto* cloud = dynamic_cast<const CObservationPointCloud*>(&observation))
     return readCloud(*cloud);
   if (const auto* scan = dynamic_cast<const CObservationVelodyneScan*>(&observation))

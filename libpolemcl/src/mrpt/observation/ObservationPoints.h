@@ -59,6 +59,7 @@ class ObservationPoints {
   };
 
  private:
+  PointsView pointsOf(const mrpt::obs::CObservation& observation);
   PointsView readCloud(const mrpt::obs::CObservationPointCloud& observation);
   PointsView readVelodyne(const mrpt::obs::CObservationVelodyneScan& observation);
   PointsView readDepth(const mrpt::obs::CObservation3DRangeScan& observation);

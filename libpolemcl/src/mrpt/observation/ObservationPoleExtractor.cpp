@@ -10,7 +10,6 @@
 #include "core/sensor/PinholeCamera.h"
 #include "core/sensor/PointOrder.h"
 #include "core/sensor/SensorConfigCheck.h"
-#include "mrpt/common/MrptReason.h"
 #include "mrpt/observation/LidarFrame.h"
 #include "mrpt/observation/ObservationPoints.h"
 
@@ -68,19 +67,6 @@ std::vector<float> planarVisibilityRange(const LidarFrame& f,
     planar[i] = std::max(0.f, seen - static_cast<float>(aside));
   }
   return planar;
-}
-
-/// Runs code that reads an observation's points; adds the observation's class to errors of MRPT.
-template <class Work>
-void readingPoints(const mrpt::obs::CObservation& observation, const Work& work) {
-  try {
-    work();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error(std::string("points of a ") + observation.GetRuntimeClass()->className +
-                " cannot be read: " + mrptReason(error.what()));
-  }
 }
 
 }  // namespace
@@ -223,28 +209,26 @@ CObservationPoles::Ptr ObservationPoleExtractor::process(
   result->sensorLabel = observation.sensorLabel;
   result->sensorPose = m_impl->options.poseOf(observation);
   m_impl->report = ExtractionReport();
-  readingPoints(observation, [&] {
-    const ObservationPoints::Loan loan(m_impl->points);
-    PointsView cloud = m_impl->points.read(observation);
-    if (cloud.size > 0) {
-      const LidarFrame frames = m_impl->frameOf(result->sensorPose);
-      m_impl->compare(observation, cloud, result->sensorPose);
-      const ScanTiming timing = m_impl->timingOf(cloud);
-      const PointsView points = m_impl->moved.toLidar(cloud, frames);
-      PoleExtractor& extractor = m_impl->extractorFor(frames);
-      result->poles = extractor.extract(points, upright(frames));
-      m_impl->report = extractor.report();
-      m_impl->setTimeOffsets(frames, timing, result->poles);
-      result->visibilityRange = planarVisibilityRange(frames, extractor.visibilityRange());
-      for (auto& pole : result->poles)
-        toPlanar(
-            frames,
-            heightOfCentre(frames, m_impl->options.extraction.method, m_impl->report.ground, pole),
-            pole);
-    }
-    m_impl->report.points += m_impl->points.dropped();
-    m_impl->report.invalid += m_impl->points.dropped();
-  });
+  const ObservationPoints::Loan loan(m_impl->points);
+  PointsView cloud = m_impl->points.read(observation);
+  if (cloud.size > 0) {
+    const LidarFrame frames = m_impl->frameOf(result->sensorPose);
+    m_impl->compare(observation, cloud, result->sensorPose);
+    const ScanTiming timing = m_impl->timingOf(cloud);
+    const PointsView points = m_impl->moved.toLidar(cloud, frames);
+    PoleExtractor& extractor = m_impl->extractorFor(frames);
+    result->poles = extractor.extract(points, upright(frames));
+    m_impl->report = extractor.report();
+    m_impl->setTimeOffsets(frames, timing, result->poles);
+    result->visibilityRange = planarVisibilityRange(frames, extractor.visibilityRange());
+    for (auto& pole : result->poles)
+      toPlanar(
+          frames,
+          heightOfCentre(frames, m_impl->options.extraction.method, m_impl->report.ground, pole),
+          pole);
+  }
+  m_impl->report.points += m_impl->points.dropped();
+  m_impl->report.invalid += m_impl->points.dropped();
   result->points = static_cast<std::uint32_t>(m_impl->report.points - m_impl->report.invalid);
   return result;
 }
@@ -252,16 +236,14 @@ CObservationPoles::Ptr ObservationPoleExtractor::process(
 io::Cloud ObservationPoleExtractor::lidarPoints(const mrpt::obs::CObservation& observation) {
   const mrpt::poses::CPose3D sensorPose = m_impl->options.poseOf(observation);
   io::Cloud cloud;
-  readingPoints(observation, [&] {
-    const ObservationPoints::Loan loan(m_impl->points);
-    const PointsView read = m_impl->points.read(observation);
-    const PointsView points = m_impl->moved.toLidar(read, m_impl->frameOf(sensorPose));
-    cloud.x.assign(points.x, points.x + points.size);
-    cloud.y.assign(points.y, points.y + points.size);
-    cloud.z.assign(points.z, points.z + points.size);
-    cloud.intensity.resize(points.size);
-    cloud.invalid = m_impl->points.dropped();
-  });
+  const ObservationPoints::Loan loan(m_impl->points);
+  const PointsView read = m_impl->points.read(observation);
+  const PointsView points = m_impl->moved.toLidar(read, m_impl->frameOf(sensorPose));
+  cloud.x.assign(points.x, points.x + points.size);
+  cloud.y.assign(points.y, points.y + points.size);
+  cloud.z.assign(points.z, points.z + points.size);
+  cloud.intensity.resize(points.size);
+  cloud.invalid = m_impl->points.dropped();
   return cloud;
 }
 
