@@ -31,6 +31,7 @@ class Feed {
       PoleMatch match;
       match.confidence = confidence;
       match.matched = i < std::lround(share * poles);
+      match.pole = match.matched ? firstPole + static_cast<std::size_t>(i) : 0;
       match.squared = match.matched ? squared : 0;
       input.matches.push_back(match);
     }
@@ -56,6 +57,7 @@ class Feed {
   Health last;
   double time = 1e9, period = 0.1, metres = 0.5, squared = 2, sigma = 0.02, yaw = 0.001,
          modeShare = 1, confidence = 1, particles = 500;
+  std::size_t firstPole = 0;  ///< index in the map of the first one that matches
   bool contradicted = false;
   RivalPose rival;
   NearPoles near;
@@ -188,6 +190,33 @@ TEST(LocalizationHealth, ALostPoseIsConfirmedAnew) {
   feed.sigma = 0.1;
   feed.scan(1).expect(State::degraded, Reason::converging);
   feed.scan(1).expect(State::ok, Reason::none);
+}
+
+/// A filter that spreads over three poles of the map fits them somewhere.
+TEST(LocalizationHealth, ALostPoseNeedsFourPolesOfTheMap) {
+  Feed feed(20, 0.9);
+  feed.expect(State::ok, Reason::none);
+  feed.sigma = 6;
+  feed.scan(0, 0).expect(State::lost, Reason::spread);
+  feed.sigma = 0.1;
+  feed.scans(40, 1, 3).expect(State::degraded, Reason::converging);
+  feed.scan(1, 4).expect(State::ok, Reason::none);
+  feed.scans(40, 1, 3).expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, ALostPoseNeedsFourPolesWithinTheLongWindow) {
+  Feed feed(20, 0.9);
+  feed.expect(State::ok, Reason::none);
+  feed.sigma = 6;
+  feed.scan(0, 0).expect(State::lost, Reason::spread);
+  feed.sigma = 0.1;
+  feed.scan(1, 2).scan(1, 2);
+  feed.metres = 19;
+  feed.firstPole = 2;
+  feed.scan(1, 2).expect(State::degraded, Reason::converging);
+  feed.metres = 2;
+  feed.firstPole = 4;
+  feed.scan(1, 2).expect(State::ok, Reason::none);
 }
 
 /// Three of them are judged together, though the window of 8 m has room for one.

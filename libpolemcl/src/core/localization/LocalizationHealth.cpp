@@ -63,6 +63,9 @@ constexpr double kConfirm = 5;       // distance with good matches until a new p
 constexpr double kConfirmFound = 2;  // the same for a pose that a search found, m
 constexpr double kConfirmNear = 8;   // the same, near a pose that was believed, m
 constexpr double kNearlyAll = 0.85;  // but not where a greater share of the poles matches
+/// Least number of poles of the map that confirm a pose that was lost. Two or three fit a wrong
+/// one, too: the particles spread until they do.
+constexpr std::size_t kReturnPoles = 4;
 /// Share of matched poles that confirms a new pose. Particles drawn over metres find matches by
 /// chance.
 constexpr double kConfirmShare = 0.5;
@@ -73,6 +76,12 @@ constexpr double kViewpoint = 0.1;       // scans nearer to each other are of on
 
 bool isSame(const Pose2D& a, const Pose2D& b) {
   return std::hypot(a.x - b.x, a.y - b.y) < kSameRival && std::abs(a.yaw - b.yaw) < kSameRivalTurn;
+}
+
+/// Removes the poles that last counted before a number of driven metres.
+void forgetPoles(std::map<std::size_t, double>& poles, double before) {
+  for (auto pole = poles.begin(); pole != poles.end();)
+    pole = pole->second < before ? poles.erase(pole) : std::next(pole);
 }
 
 }  // namespace
@@ -122,6 +131,7 @@ Health HealthMonitor::update(const HealthInput& input) {
   m_health.spread = largestSigma(input.estimate.covariance.topLeftCorner<2, 2>());
   m_health.spreadHeading = std::sqrt(std::max(0.0, input.estimate.covariance(2, 2)));
   confirm(input);
+  confirmReturn(input);
   if (isGap) m_gapUntil = m_goodDriven + kConfirm;
   judge(input);
   return m_health;
@@ -192,8 +202,7 @@ bool HealthMonitor::isInFullDoubt() const {
 /// metres; a few do so by chance and do not count. It falls slowly, and more slowly where few poles
 /// are seen, since the LiDAR that moved may have seen all of them.
 void HealthMonitor::doubtByRivals(const HealthInput& input) {
-  for (auto pole = m_rivalPoles.begin(); pole != m_rivalPoles.end();)
-    pole = m_driven - pole->second > kRivalForgotten ? m_rivalPoles.erase(pole) : std::next(pole);
+  forgetPoles(m_rivalPoles, m_driven - kRivalForgotten);
   std::size_t count = 0;
   if (!input.rival.poles.empty()) {
     if (!isSame(input.rival.motion, m_lastRival)) m_rivalPoles.clear();
@@ -264,10 +273,23 @@ void HealthMonitor::confirm(const HealthInput& input) {
   m_rivalDoubt = 0;  // it was of a pose that was not known yet
 }
 
-void HealthMonitor::judge(const HealthInput& input) {
-  // The scan that ends `lost` does not count: it may match by chance.
-  if (m_confirmed && m_health.state == HealthState::lost)
+/// Confirms a pose that was lost and that no search has replaced.
+void HealthMonitor::confirmReturn(const HealthInput& input) {
+  if (m_confirmed && m_health.state == HealthState::lost) {
+    // The scan that ends `lost` does not count: it may match by chance.
+    m_isReturning = true;
     m_lostUntil = m_goodDriven + kConfirmFound;
+    m_returnPoles.clear();
+    return;
+  }
+  if (!m_isReturning) return;
+  for (const PoleMatch& match : input.matches)
+    if (match.matched) m_returnPoles[match.pole] = m_driven;
+  forgetPoles(m_returnPoles, m_driven - kLostWindow);
+  m_isReturning = m_goodDriven < m_lostUntil || m_returnPoles.size() < kReturnPoles;
+}
+
+void HealthMonitor::judge(const HealthInput& input) {
   const bool fewMatched = m_health.matchedShare < kDegradedShare;
   // A lost filter spreads until it meets chance matches; they are no reason to believe it again.
   const bool believed = m_confirmed && m_health.state != HealthState::lost;
@@ -296,7 +318,7 @@ void HealthMonitor::judge(const HealthInput& input) {
       {((m_isEnough && fewMatched) || m_doubt > kDoubt) && !m_leftMap, State::degraded,
        Reason::mismatch},
       {wide, State::degraded, Reason::spread},
-      {m_goodDriven < m_lostUntil, State::degraded, Reason::converging},
+      {m_isReturning, State::degraded, Reason::converging},
       {m_goodDriven < m_gapUntil, State::degraded, Reason::timeGap},
       {blind || (m_leftMap && fewMatched), State::degraded, Reason::noPoles},
       {input.odometryContradicted, State::degraded, Reason::odometry},

@@ -87,6 +87,7 @@ class POLEMCL_EXPORT HealthMonitor {
   void sumUp();
   double metresToConfirm() const;
   void confirm(const HealthInput& input);
+  void confirmReturn(const HealthInput& input);
   bool leftMap(const Window& window) const;
   void judge(const HealthInput& input);
 
@@ -106,10 +107,13 @@ class POLEMCL_EXPORT HealthMonitor {
   Pose2D m_lastRival;       ///< that pose, from the estimate
   /// Poles of the map that fit it, and the metres driven when each last did.
   std::map<std::size_t, double> m_rivalPoles;
-  double m_doubt = 0;       ///< log-likelihood ratio of a wrong place, see doubt()
-  double m_goodDriven = 0;  ///< metres with enough matches since begin()
-  double m_gapUntil = 0;    ///< as many of them end a time gap
-  double m_lostUntil = 0;   ///< as many of them confirm a pose that was lost
+  double m_doubt = 0;          ///< log-likelihood ratio of a wrong place, see doubt()
+  double m_goodDriven = 0;     ///< metres with enough matches since begin()
+  double m_gapUntil = 0;       ///< as many of them end a time gap
+  double m_lostUntil = 0;      ///< as many of them confirm a pose that was lost
+  bool m_isReturning = false;  ///< it was lost, and neither a search nor the poles confirm it yet
+  /// Poles of the map that matched since then, and the metres driven when each last did.
+  std::map<std::size_t, double> m_returnPoles;
 };
 
 }  // namespace polemcl
