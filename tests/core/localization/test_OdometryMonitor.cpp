@@ -101,6 +101,25 @@ std::size_t countReplaced(const std::vector<PoleScan>& scans) {
   return replaced;
 }
 
+/// In a turn, three far poles on one side do not tell the motion well. They do not outweigh that no
+/// vehicle stops at once.
+TEST(OdometryMonitor, FewFarPolesDoNotConfirmAnImpossibleStop) {
+  const Pose2D motion{0.78, 0, 0.07};
+  OdometryMonitor check;
+  Pose2D pose;
+  for (int i = 0; i < 12; ++i, pose = compose(pose, motion)) {
+    std::vector<PoleDetection> poles;
+    for (const auto& [x, y] : {std::pair{6.8, 16.4}, {2.3, 18.8}, {-5.8, 23.2}}) {
+      const Pose2D at = relative(pose, {x, y, 0});
+      poles.push_back(tests::detectionAt(at.x, at.y, 1e-2));
+    }
+    const bool isStuck = i >= 8;
+    const auto result =
+        check.add(0.1 * i, isStuck ? Pose2D() : motion, CheckedDrive::covarianceOf(motion), poles);
+    EXPECT_EQ(result.replaced, isStuck) << i;
+  }
+}
+
 TEST(OdometryMonitor, LeavesAHealthyOdometryAlone) {
   for (const double step : {0.02, 0.3, 0.7, 1.5})
     for (const std::uint64_t seed : {1, 2, 3}) {

@@ -171,8 +171,13 @@ bool OdometryMonitor::suffices(const ScanRegistration& alignment, const Referenc
 /// Distance of the poles' motion from what the odometry allows, in standard deviations.
 double OdometryMonitor::beyondOdometry(const Reference& reference, const Reference& now,
                                        const ScanRegistration& found) {
-  const Pose2D odometry = relative(reference.odometry, now.odometry);
-  const Eigen::Matrix3d spent = now.spent - reference.spent;
+  return beyondMotion(relative(reference.odometry, now.odometry), now.spent - reference.spent,
+                      found);
+}
+
+/// The same for any motion. \param spent Its covariance.
+double OdometryMonitor::beyondMotion(const Pose2D& odometry, const Eigen::Matrix3d& spent,
+                                     const ScanRegistration& found) {
   // Errors of the headings on the way move the end.
   const double carried = spent(2, 2) * (odometry.x * odometry.x + odometry.y * odometry.y) / 3;
   const Eigen::Vector3d least(kLeastSigma * kLeastSigma + carried,
@@ -225,9 +230,19 @@ bool OdometryMonitor::isDistinct(const Reference& reference, const Reference& no
   return isPossible && stated.pairs < 2 && found.pairs >= kStandingShare * fewer;
 }
 
+/// Whether the motion of the poles is too uncertain to exclude that the speed before goes on.
+bool OdometryMonitor::allowsLastSpeed(const Reference& reference, const Reference& now,
+                                      const ScanRegistration& found) const {
+  const Reference& last = m_past.back();
+  const Pose2D on = compose(last.used, coast(now.time - last.time));
+  return beyondMotion(relative(reference.used, on), now.spent - reference.spent, found) <= kSigmas;
+}
+
 /// One scan while the odometry is believed or suspected.
 MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& odometry) {
   MonitoredMotion result = odometry;
+  const bool isImpossible = !isPossible(now, odometry.motion) &&
+                            !m_steps.isOpen(odometry.motion, now.time - m_past.back().time);
   bool search = true;  // with the scan before only
   for (const std::size_t i : chosen(now.time)) {
     const Finding finding = compare(m_past[i], now, search);
@@ -237,16 +252,16 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
     if (finding.verdict == OdometryVerdict::contradicted)
       return contradict(now, m_past[i], finding.alignment, odometry);
     if (finding.verdict == OdometryVerdict::unknown) continue;
+    if (isImpossible && allowsLastSpeed(m_past[i], now, finding.alignment)) continue;
     result.verdict = OdometryVerdict::agrees;
     result.pairs = std::max(result.pairs, finding.alignment.pairs);
   }
   m_state = State::believed;
   countSeenAgain(now, odometry.motion);
   if (result.verdict == OdometryVerdict::unknown) {
-    const bool isUnseen = m_chance < kLeastChance, isImpossible = !isPossible(now, odometry.motion);
-    const bool isOpen = m_steps.isOpen(odometry.motion, now.time - m_past.back().time);
-    if ((isUnseen && m_hasChanged) || (isImpossible && !isOpen)) return coasted(now, odometry);
-    if (isUnseen || isImpossible) {
+    const bool isUnseen = m_chance < kLeastChance;
+    if ((isUnseen && m_hasChanged) || isImpossible) return coasted(now, odometry);
+    if (isUnseen || !isPossible(now, odometry.motion)) {
       result.verdict = OdometryVerdict::contradicted;
       return result;
     }

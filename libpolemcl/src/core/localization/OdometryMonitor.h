@@ -77,6 +77,10 @@ class POLEMCL_EXPORT OdometryMonitor {
   static double beyondOdometry(const Reference& reference, const Reference& now,
                                const ScanRegistration& found);
   static ScanRegistration allowed(const Reference& reference, const Reference& now);
+  static double beyondMotion(const Pose2D& odometry, const Eigen::Matrix3d& spent,
+                             const ScanRegistration& found);
+  bool allowsLastSpeed(const Reference& reference, const Reference& now,
+                       const ScanRegistration& found) const;
   bool isDistinct(const Reference& reference, const Reference& now, const ScanRegistration& found,
                   const ScanRegistration& stated) const;
   static bool suffices(const ScanRegistration& alignment, const Reference& reference,
