@@ -4,7 +4,7 @@
 # 3.5 m as there, and each with all poles as on the map and with half of them gone and twice the false detections.
 # Usage: share/experiments/faults-sparse.sh OUT [FIRST [WORLDS]]
 #   OUT     gets maps, drives, one JSON for each fault, table.txt and result.json
-#   FIRST   first world, 548 unless given; WORLDS: their number, 2 unless given
+#   FIRST   first world, 556 unless given; WORLDS: their number, 2 unless given
 # 8 s before each fault, 10 s of it, 100 m after it. 50 trials each, seed 501. POLEMCL_DATA names the folder of data
 # for the road, tracks/kaist01.txt.gz; without it, the simulator's own street of 3 km.
 # Programs: build/bin, or POLEMCL_BIN. Needs jq; seven minutes.
@@ -15,7 +15,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 1 3 "$@"
 make_out "$1"
-first=${2:-548}
+first=${2:-556}
 worlds=${3:-2}
 find_programs pole-simulate pole-map pole-eval
 find_tools jq

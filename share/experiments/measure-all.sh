@@ -96,7 +96,9 @@ measure odometry-bias result.json odometry-bias.json odometry-bias.sh @
 measure odometry-bias-cast result.json odometry-bias-cast.json odometry-bias.sh @ --cast 851 10
 measure inventory result.json inventory.json inventory.sh @ 961
 measure faults faults.json faults.json faults.sh @
+measure faults-541 faults.json faults-541.json faults.sh @ 541
 measure faults-kilometre faults.json faults-kilometre.json faults-kilometre.sh "$data" "$kilometre" @
+measure faults-sparse result.json faults-sparse.json faults-sparse.sh @
 measure leaving-the-map result.json leaving-the-map.json leaving-the-map.sh @
 measure starts result.json starts.json starts.sh @
 measure year result.json year.json year.sh @ 500 2
