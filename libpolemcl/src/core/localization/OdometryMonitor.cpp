@@ -176,14 +176,14 @@ double OdometryMonitor::beyondOdometry(const Reference& reference, const Referen
 }
 
 /// The same for any motion. \param spent Its covariance.
-double OdometryMonitor::beyondMotion(const Pose2D& odometry, const Eigen::Matrix3d& spent,
+double OdometryMonitor::beyondMotion(const Pose2D& motion, const Eigen::Matrix3d& spent,
                                      const ScanRegistration& found) {
   // Errors of the headings on the way move the end.
-  const double carried = spent(2, 2) * (odometry.x * odometry.x + odometry.y * odometry.y) / 3;
+  const double carried = spent(2, 2) * (motion.x * motion.x + motion.y * motion.y) / 3;
   const Eigen::Vector3d least(kLeastSigma * kLeastSigma + carried,
                               kLeastSigma * kLeastSigma + carried, kLeastTurn * kLeastTurn);
   const Eigen::Matrix3d leastCovariance = least.asDiagonal();
-  return beyondTolerance(odometry, found.motion, found.covariance + spent + leastCovariance);
+  return beyondTolerance(motion, found.motion, found.covariance + spent + leastCovariance);
 }
 
 /// The odometry with the pairs that support it, corrected by them within its tolerance.

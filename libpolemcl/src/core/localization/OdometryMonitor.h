@@ -77,7 +77,7 @@ class POLEMCL_EXPORT OdometryMonitor {
   static double beyondOdometry(const Reference& reference, const Reference& now,
                                const ScanRegistration& found);
   static ScanRegistration allowed(const Reference& reference, const Reference& now);
-  static double beyondMotion(const Pose2D& odometry, const Eigen::Matrix3d& spent,
+  static double beyondMotion(const Pose2D& motion, const Eigen::Matrix3d& spent,
                              const ScanRegistration& found);
   bool allowsLastSpeed(const Reference& reference, const Reference& now,
                        const ScanRegistration& found) const;
