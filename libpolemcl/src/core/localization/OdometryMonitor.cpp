@@ -230,7 +230,8 @@ bool OdometryMonitor::isDistinct(const Reference& reference, const Reference& no
   return isPossible && stated.pairs < 2 && found.pairs >= kStandingShare * fewer;
 }
 
-/// Whether the motion of the poles is too uncertain to exclude that the speed before goes on.
+/// Whether the motion of the poles is too uncertain to exclude that the speed before goes on. One
+/// that was only judged, not estimated, always is: its covariance is 1 m².
 bool OdometryMonitor::allowsLastSpeed(const Reference& reference, const Reference& now,
                                       const ScanRegistration& found) const {
   const Reference& last = m_past.back();
