@@ -6,6 +6,7 @@
 #   files     text files end with one newline, and have no spaces at line ends (Markdown may)
 #   words     no phrases that readers with another first language stumble over
 #   faults    each fault of tests/mutation is in the sources once
+#   findings  the test of each finding of the fuzzers is there
 #   tidy      clang-tidy has nothing to say (.clang-tidy); takes many minutes
 # Needs the packages that share/setup/install.sh full installs.
 set -eu
@@ -60,6 +61,16 @@ faults() {
   [ "$good" ]
 }
 
+findings() {
+  found=$(cut -d, -f4 share/reports/fuzz-findings.csv | tail -n +2 | tr . ' ' | while read -r suite name; do
+    git grep -qE "^TEST(_F)?\($suite, $name\)" -- tests || echo "fuzz-findings.csv: no test is called $suite.$name"
+  done)
+  [ -z "$found" ] || {
+    echo "$found" >&2
+    return 1
+  }
+}
+
 tidy() {
   cmake --preset clang -G Ninja >/dev/null
   # Not the tests, nor the generated identity of the build.
@@ -69,9 +80,9 @@ tidy() {
 [ $# -gt 0 ] || set -- --help
 for check in "$@"; do
   case $check in
-    format | spelling | files | words | faults | tidy) ;;
+    format | spelling | files | words | faults | findings | tidy) ;;
     *)
-      sed -n '2,10s/^# //p' "$0"
+      sed -n '2,11s/^# //p' "$0"
       [ "$check" = -h ] || [ "$check" = --help ] || exit 2
       exit 0
       ;;

@@ -4,7 +4,7 @@
 #   --quick   the unit tests only: less than a minute after the build
 #   --full    all steps, whichever fail, then a table of them; takes half a day on 2 cores. The same command
 #             again goes on with the steps that have not passed at this commit
-#   lint      format, spelling, hard phrases, ends of lines and files
+#   lint      format, spelling, hard phrases, ends of lines and files, tests of findings
 #   unit      the unit tests
 #   test      all tests, files of earlier releases, the installed programs and examples, a kill of each command
 #   tidy      clang-tidy
@@ -44,7 +44,7 @@ build() {
 }
 
 lint() {
-  "$top/tests/lint.sh" format spelling files words faults
+  "$top/tests/lint.sh" format spelling files words faults findings
 }
 
 unit() {
