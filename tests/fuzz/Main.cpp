@@ -88,8 +88,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   return 0;
 }
 
-// LimitedNew.cpp bounds `new` and `aligned_alloc`, which the C++ library's other forms of `new`
-// call; those of the sanitizer do not.
+// LimitedNew.cpp bounds `new`, which the C++ library's `new[]` calls; that of the sanitizer does
+// not.
 void* operator new[](std::size_t size) {
   return operator new(size);
 }
@@ -97,14 +97,5 @@ void operator delete[](void* memory) noexcept {
   operator delete(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
-  operator delete(memory);
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  return aligned_alloc(static_cast<std::size_t>(alignment), size);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-  operator delete(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
   operator delete(memory);
 }
